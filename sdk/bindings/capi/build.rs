@@ -1,4 +1,4 @@
-//! Sets the name by which programs find the shared library.
+//! Sets the name under which programs find the shared library.
 
 /// The major number of `HTEX_API_VERSION`.
 const MAJOR: u32 = 1;

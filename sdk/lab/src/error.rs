@@ -6,7 +6,7 @@ use htex_base::finding::Hint;
 
 use crate::response::Channel;
 
-/// Error of an experiment. What was recorded, and every answer that was given before it, stays on
+/// The error of an experiment. Everything that was recorded or answered before the error stays on
 /// disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -48,26 +48,26 @@ pub enum LabError {
         after_s: f64,
         /// Length of the take, seconds.
         seconds: f64,
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
     /// The source stopped with an error during a take.
     #[error("{error}{}", with_place(.kept))]
     Interrupted {
         error: Box<LabError>,
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
-    /// The source delivers nothing.
+    /// The source delivers no samples.
     #[error("the source has delivered nothing for {seconds} s; check its cable and its clock")]
     Silent { seconds: u64 },
     /// The user ended the session.
     #[error("the session was ended{}", with_place(.kept))]
     Left {
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
-    /// No attempt kept to the target.
+    /// No take kept to its target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
         attempts: u32,
@@ -86,7 +86,7 @@ pub enum LabError {
         /// Time since the source was started, seconds.
         at_s: f64,
     },
-    /// There is a target, but no signal that measures it.
+    /// There is a target for a speed or a force, but no signal that measures it.
     #[error("a target {what} is given, but the {what} is not measured; {advice}")]
     NotMeasured {
         /// `speed` or `force`.
@@ -117,7 +117,8 @@ pub enum LabError {
         line: usize,
         problem: String,
     },
-    /// The file was begun under other conditions. Results of two versions must not be mixed.
+    /// The file of answers belongs to another version of the study. Results of two versions must
+    /// not be mixed.
     #[error(
         "{}: the answers there were begun with another version: {changed}. Restore what was there (the earlier settings, in the case of a \
          device), or start anew in another folder (-o)",
@@ -136,7 +137,7 @@ pub enum LabError {
         "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
     )]
     NoBandError { texture: String, model: String },
-    /// The device ran dry in every attempt of a trial.
+    /// The device ran out of samples in every attempt of a trial.
     #[error(
         "the device ran dry in {times} attempts of the same trial; the last: {error}. Close other programs or give the device a larger \
          buffer (in another folder, -o, since settings are not mixed); the trial is repeated when the same command is run again"
@@ -147,12 +148,12 @@ pub enum LabError {
         /// The last error.
         error: String,
     },
-    /// What was felt in a trial could not be recorded.
+    /// The forces that the participant felt in a trial could not be recorded.
     #[error(
         "recording what is felt: {0}; the trial is repeated when the same command is run again"
     )]
     Felt(Box<LabError>),
-    /// There are no recordings of what was felt.
+    /// There are no recordings of felt forces.
     #[error("{}: the felt force was not recorded; give `htex study run` a source (--source)", .folder.display())]
     NotRecorded {
         /// The folder of answers.
@@ -167,14 +168,14 @@ pub enum LabError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// Input and output make no column map: they name the same column, or the further roles include
-    /// an axis.
+    /// No column map can be made from input and output: they name the same column, or the further
+    /// roles include an axis.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.
     #[error("no recording is given; give at least one with input and output")]
     NoRecord,
-    /// A recording does not hold exactly one signal for each channel.
+    /// A recording does not have exactly one signal for each channel.
     #[error(
         "{file}: {signals} signals were read and 2 are needed; name one column as the input and one as the output"
     )]
@@ -230,9 +231,9 @@ pub enum LabError {
     )]
     Rates {
         first: String,
-        /// Its rate, hertz.
+        /// Sample rate of the first recording, hertz.
         first_hz: f64,
-        /// The recording that differs.
+        /// The recording whose sample rate differs.
         file: String,
         rate_hz: f64,
     },
@@ -246,7 +247,7 @@ pub enum LabError {
         /// Length of the window, seconds.
         window_s: f64,
     },
-    /// An option has an impossible value.
+    /// A setting has a value that cannot be used.
     #[error("{option} is {value}; {problem}")]
     Option {
         option: &'static str,
@@ -265,16 +266,16 @@ pub enum LabError {
         found: usize,
         /// Number that can be used.
         used: usize,
-        /// The hits or windows that were thrown out, each with place and reason.
+        /// The hits or windows that were thrown out, each with its place and the reason.
         reasons: Vec<String>,
     },
-    /// The response cannot be written in a form that `htex` reads.
+    /// The response cannot be written to a file that `htex` can read.
     #[error(
         "the magnitude {magnitude} at {frequency_hz} Hz is beyond 1e-9 to 1e9, which responses are limited to; scale the input or the output to another unit"
     )]
     Magnitude {
         frequency_hz: f64,
-        /// The magnitude, output over input.
+        /// The magnitude, in the output's unit per unit of the input.
         magnitude: f64,
     },
 }
@@ -308,7 +309,7 @@ impl LabError {
         Self::Busy { file: file.to_owned(), doing }
     }
 
-    /// Says that an error prevents the recording of what is felt.
+    /// Converts an error to one that states that felt forces could not be recorded.
     pub fn felt(error: impl Into<Self>) -> Self {
         Self::Felt(Box::new(error.into()))
     }

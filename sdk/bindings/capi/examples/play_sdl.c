@@ -1,4 +1,5 @@
-/* Plays an asset through a sound card with SDL2 while the finger speeds up. The audio thread renders; the main thread moves the finger.
+/* Plays an asset through a sound card with SDL2 while the finger speeds up. The audio thread
+ * renders; the main thread moves the finger.
  *
  *     cc play_sdl.c $(pkg-config --cflags --libs htex sdl2) -o play_sdl
  *     ./play_sdl sandpaper.htex 2

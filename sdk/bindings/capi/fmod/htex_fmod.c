@@ -1,12 +1,15 @@
-/* A plug-in instrument for FMOD: plays a texture of touch at the speed and force of a finger. For FMOD 2.02 and 2.03; see README.md.
+/* A plug-in instrument for FMOD: plays a texture of touch at the speed and force of a finger.
+ * For FMOD 2.02 and 2.03; see README.md.
  *
- * Threads. The mixer calls `process` and `should_i_process`. The rest is called by the thread that sets parameters, one call at a time for
- * an instance. FMOD's documentation does not promise that it is another thread than the mixer, so nothing waits for anything:
- *   - a voice is made by that thread and waits in `next`, from which the mixer takes it with its next block;
- *   - the voice that it replaces waits in `retired` for a later call that sets the asset, model or seed, resets or releases: the mixer frees
- *     nothing;
+ * Threads. The mixer calls `process` and `should_i_process`. The thread that sets parameters calls
+ * all other functions, one at a time for each instance. FMOD's documentation does not promise that
+ * these are two different threads, so no function waits for another:
+ *   - the thread that sets parameters makes a voice and puts it in `next`; the mixer takes it from
+ *     there at its next block;
+ *   - the mixer frees nothing: it puts the voice that was replaced in `retired`, and a later call
+ *     that sets the asset, model or seed, resets or releases frees it;
  *   - numbers are atomic.
- * An asset opens in set_data, within that call: set it while a level loads, not by automation.
+ * set_data opens an asset within the call. So set it while a level loads, not by automation.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -23,13 +26,13 @@
 
 enum { ASSET, SPEED, FORCE, LEVEL, MODEL, SEED, PARAMETERS };
 
-/* Level that is silence, dB. */
+/* Level in dB that counts as silence. */
 #define OFF_DB (-80.0f)
 
-/* Of `next`: play nothing. */
+/* Value of `next`: play nothing. */
 #define NO_VOICE UINT64_MAX
 
-/* Projects store the index of a model: new ones come at the end. */
+/* Projects store the index of a model, so append new models at the end. */
 enum { MODEL_COUNT = sizeof MODELS / sizeof MODELS[0] };
 
 #define FLOAT(_name, _label, _description, _min, _max, _default)                                                       \
@@ -48,7 +51,7 @@ static FMOD_DSP_PARAMETER_DESC parameters[PARAMETERS] = {
                .name = "Asset",
                .description = "Bytes of a .htex file. Default: none, which is silent",
                .datadesc = {FMOD_DSP_PARAMETER_DATA_TYPE_USER}},
-    /* Beyond 1000 mm/s and 20 N a motion counts as a failed reading, and is not followed. */
+    /* A motion above 1000 mm/s or 20 N counts as a failed reading. The voice does not follow it. */
     [SPEED] = FLOAT("Speed", "mm/s", "Scanning speed in mm/s. 0 to 1000. Default: 0, which is silent", 0.0f, 1000.0f, 0.0f),
     [FORCE] = FLOAT("Force", "N", "Normal force in N. 0 to 20. Default: 0.4", 0.0f, 20.0f, 0.4f),
     [LEVEL] = FLOAT("Level", "dB", "Full scale for one unit of the asset, in dB. -80 (off) to 60. Default: 20", OFF_DB, 60.0f, 20.0f),
@@ -59,25 +62,25 @@ static FMOD_DSP_PARAMETER_DESC *parameter_list[PARAMETERS] = {
     &parameters[ASSET], &parameters[SPEED], &parameters[FORCE], &parameters[LEVEL], &parameters[MODEL], &parameters[SEED],
 };
 
-/* An instance. */
+/* An instance of the plug-in. */
 struct texture {
-    /* Of the thread that sets parameters. */
+    /* Only the thread that sets parameters uses these. */
     htex_asset asset;
     unsigned char *bytes;
     unsigned int length;
     int model;
     int seed;
-    /* Of both threads. */
+    /* Both threads use these. */
     _Atomic float speed_mm_s;
     _Atomic float force_n;
     _Atomic float level_db;
-    _Atomic uint64_t next;    /* voice that was made, NO_VOICE, or 0: the mixer took it */
+    _Atomic uint64_t next;    /* new voice, NO_VOICE, or 0 once the mixer took it */
     _Atomic uint64_t retired; /* voice that the mixer does not play any more, or 0 */
-    atomic_int failed;        /* not 0: `failure` has a text that was not logged */
+    atomic_int failed;        /* not 0: `failure` has a text to be logged */
     char failure[256];
-    /* Of the mixer. */
+    /* Only the mixer uses these. */
     htex_voice playing;
-    int is_broken; /* `playing` failed, and is silent until another one comes */
+    int is_broken; /* `playing` failed; silent until another voice comes */
 };
 
 static struct texture *texture_of(FMOD_DSP_STATE *state)
@@ -87,8 +90,9 @@ static struct texture *texture_of(FMOD_DSP_STATE *state)
 
 /* ---- Mixer: nothing below allocates, frees, locks or waits. ---- */
 
-/* Takes over the voice that waits, once the one before was collected. `retired` is stored first: a later hand_over finds it empty or
- * collects it, so that none waits for good. */
+/* Takes the voice that waits in `next`, once the voice before it in `retired` was collected.
+ * `retired` is stored first. A later hand_over then finds it empty or collects it, so that no
+ * voice waits forever. */
 static void take_over(struct texture *texture)
 {
     if (atomic_load(&texture->next) == 0 || atomic_load(&texture->retired) != 0)
@@ -99,7 +103,7 @@ static void take_over(struct texture *texture)
     texture->is_broken = 0;
 }
 
-/* Keeps the text of an error for the thread that sets parameters, and the voice silent. */
+/* Keeps the text of an error for the thread that sets parameters, and makes the voice silent. */
 static void fail(struct texture *texture)
 {
     texture->is_broken = 1;
@@ -114,7 +118,8 @@ static double gain_of(float level_db)
     return level_db <= OFF_DB ? 0.0 : pow(10.0, level_db / 20.0);
 }
 
-/* Sets level and motion of the voice; returns whether it sounds. It also does when the finger has just stopped, until it has faded. */
+/* Sets the level and motion of the voice. Returns whether it is audible. After the finger stops,
+ * the voice stays audible until it has faded. */
 static int prepare(struct texture *texture)
 {
     uint32_t is_silent = 1;
@@ -131,7 +136,7 @@ static int prepare(struct texture *texture)
     return !is_silent;
 }
 
-/* Gives each of the interleaved channels the samples of the first `frames` places. */
+/* Copies the first `frames` samples of the buffer into every one of the interleaved channels. */
 static void spread(float *out, size_t frames, size_t channels)
 {
     for (size_t frame = frames; frame-- > 0;) {
@@ -189,7 +194,7 @@ static FMOD_RESULT F_CALL should_i_process(FMOD_DSP_STATE *state, FMOD_BOOL inpu
 
 /* ---- The thread that sets parameters. ---- */
 
-/* Logs what failed in the mixer. */
+/* Logs the error that the mixer kept. */
 static void report(FMOD_DSP_STATE *state)
 {
     struct texture *texture = texture_of(state);
@@ -212,14 +217,15 @@ static void free_voice(uint64_t voice)
         htex_voice_free((htex_voice){voice});
 }
 
-/* Gives the mixer a voice, or NO_VOICE. Frees what it did not take, and then what it played before. */
+/* Gives the mixer a voice, or NO_VOICE. Frees the voice that the mixer did not take, then the
+ * voice that it played before. */
 static void hand_over(struct texture *texture, uint64_t voice)
 {
     free_voice(atomic_exchange(&texture->next, voice));
     free_voice(atomic_exchange(&texture->retired, 0));
 }
 
-/* Makes a voice at rest, which fades in with the first motion. */
+/* Makes a voice at rest. It fades in at the first motion. */
 static FMOD_RESULT make_voice(FMOD_DSP_STATE *state, htex_asset asset, int model, int seed, htex_voice *voice)
 {
     int rate_hz = 0;
@@ -239,7 +245,8 @@ static FMOD_RESULT make_voice(FMOD_DSP_STATE *state, htex_asset asset, int model
     return FMOD_OK;
 }
 
-/* Plays the asset from its beginning with this model and seed. After an error the voice plays on. */
+/* Plays the asset from its beginning with the current model and seed. After an error the old
+ * voice plays on. */
 static FMOD_RESULT restart(FMOD_DSP_STATE *state, int model, int seed)
 {
     struct texture *texture = texture_of(state);
@@ -252,7 +259,7 @@ static FMOD_RESULT restart(FMOD_DSP_STATE *state, int model, int seed)
     return result;
 }
 
-/* Replaces asset, bytes and voice; 0, NULL and NO_VOICE for none. */
+/* Replaces asset, bytes and voice. 0, NULL and NO_VOICE stand for none. */
 static void replace(FMOD_DSP_STATE *state, htex_asset asset, unsigned char *bytes, unsigned int length, uint64_t voice)
 {
     struct texture *texture = texture_of(state);
@@ -266,7 +273,8 @@ static void replace(FMOD_DSP_STATE *state, htex_asset asset, unsigned char *byte
     texture->length = length;
 }
 
-/* Opens an asset and makes its voice, then replaces those before. The bytes are kept for get_data. */
+/* Opens an asset and makes its voice, then replaces the previous asset and voice. Keeps the
+ * bytes for get_data. */
 static FMOD_RESULT open_asset(FMOD_DSP_STATE *state, const void *data, unsigned int length)
 {
     struct texture *texture = texture_of(state);
@@ -308,7 +316,7 @@ static FMOD_RESULT F_CALL get_data(FMOD_DSP_STATE *state, int index, void **data
         return FMOD_ERR_INVALID_PARAM;
     *data = texture->bytes;
     *length = texture->length;
-    /* A longer name is cut after a whole character. */
+    /* A name that is too long is cut after a whole character. */
     if (text != NULL && htex_asset_name(texture->asset, text, FMOD_DSP_GETPARAM_VALUESTR_LENGTH, NULL) == HTEX_STATUS_BAD_HANDLE)
         text[0] = 0;
     return FMOD_OK;

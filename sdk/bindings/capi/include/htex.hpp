@@ -1,5 +1,6 @@
-/* htex.hpp: libhtex for C++17. Objects free themselves and can be moved; nothing throws: a call that can fail returns a
- * Result, which has a value or a status with its text.
+/* htex.hpp: libhtex for C++17. Objects free themselves and can be moved. No function throws an
+ * error of htex: a call that can fail returns a status, or a Result with either a value or a status
+ * and its text.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -25,13 +26,13 @@ using Reader = htex_reader;
 using Files = htex_files;
 using DeviceCounts = htex_device_counts;
 
-/* A motion at an unknown position and place. */
+/* Returns a motion whose position and place are unknown. */
 inline Motion motion(double speed_mm_s, double force_n) noexcept
 {
     return {sizeof(Motion), speed_mm_s, force_n, NAN, NAN, NAN};
 }
 
-/* A status and the text of its error, which is empty on success. */
+/* The status of a call, and the text of its error. The text is empty on success. */
 struct Status {
     htex_status code = HTEX_STATUS_OK;
     std::string text;
@@ -44,7 +45,7 @@ inline Status status_of(htex_status code)
     return code == HTEX_STATUS_OK ? Status{} : Status{code, htex_last_error()};
 }
 
-/* What a status means. */
+/* Returns the meaning of a status, in English. */
 inline const char *text_of(htex_status code) noexcept
 {
     return htex_status_text(code);
@@ -56,13 +57,14 @@ inline htex_status set_log(htex_log_callback callback, void *context = nullptr) 
     return htex_set_log(callback, context);
 }
 
-/* Frees all that the library has; see htex_shutdown. Objects that are left are empty. */
+/* Frees everything that the library holds; see htex_shutdown. Calls on remaining objects then
+ * fail. */
 inline htex_status shutdown() noexcept
 {
     return htex_shutdown();
 }
 
-/* A value, or the status of the call that has none. */
+/* The value that a call returns, or the status of a call that failed. */
 template <typename T> class Result {
 public:
     Result(T value) : value_(std::move(value)) {}
@@ -82,7 +84,7 @@ private:
 
 namespace detail {
 
-/* A handle that is freed once. */
+/* Owns a handle, and frees it once. */
 template <typename Handle, htex_status (*Free)(Handle)> class Owned {
 public:
     Owned() noexcept = default;
@@ -106,7 +108,7 @@ private:
     Handle handle_{0};
 };
 
-/* The text that a function writes. */
+/* Returns the text that a function writes. */
 template <typename Call> Result<std::string> text(Call call)
 {
     size_t length = 0;
@@ -121,7 +123,7 @@ template <typename Call> Result<std::string> text(Call call)
 
 } /* namespace detail */
 
-/* Options of a voice; see htex_voice_options. */
+/* Options for making a voice; see htex_voice_options. */
 struct VoiceOptions {
     std::optional<std::string> model;
     double rate_hz = 0.0;
@@ -137,19 +139,20 @@ struct VoiceOptions {
     double ceiling = 0.0;
 };
 
-/* What a voice played since it was last asked; see htex_voice_envelope. */
+/* Level and mean frequency of what a voice played since the last call; see htex_voice_envelope. */
 struct Envelope {
     double level_rms = 0.0;
     double centroid_hz = 0.0;
     uint64_t frames = 0;
 };
 
-/* A playing texture. [one thread at a time] */
+/* A texture that is playing; see htex_voice. [one thread at a time] */
 class Voice {
 public:
     Voice() noexcept = default;
 
-    /* [real-time] The code alone: the text of an error is not copied, which would allocate. */
+    /* [real-time] Sets the motion of the finger. Returns only the status code: copying the text
+     * of an error would allocate. */
     htex_status set_motion(const Motion &motion) noexcept
     {
         return htex_voice_set_motion(handle_.get(), &motion);
@@ -164,21 +167,22 @@ public:
     {
         return htex_voice_render_path(handle_.get(), motions, motions_len, out, frames);
     }
-    /* [real-time] Adds the samples, multiplied by `gain`. */
+    /* [real-time] Renders samples, multiplies them by `gain` and adds them to `out`. */
     htex_status render_add(float *out, size_t frames, float gain) noexcept
     {
         return htex_voice_render_add(handle_.get(), out, frames, gain);
     }
     /* [real-time] */
     htex_status set_gain(double gain) noexcept { return htex_voice_set_gain(handle_.get(), gain); }
-    /* [real-time] Whether the voice rests; false of no voice. */
+    /* [real-time] Returns whether the voice is silent; false if there is no voice. */
     bool is_silent() const noexcept
     {
         uint32_t silent = 0;
         htex_voice_is_silent(handle_.get(), &silent);
         return silent != 0;
     }
-    /* [real-time] What was rendered since the last call; `bands` has `bands_len` places, as many as bands or none. */
+    /* [real-time] Writes the level and mean frequency of what was rendered since the last call.
+     * `bands_len` must be the voice's number of bands, or 0. */
     htex_status envelope(Envelope &out, double *bands = nullptr, size_t bands_len = 0) noexcept
     {
         htex_envelope envelope{};
@@ -188,7 +192,8 @@ public:
             out = {envelope.level_rms, envelope.centroid_hz, envelope.frames};
         return code;
     }
-    /* Edges of `bands` bands, Hz. */
+    /* Returns the edges of the bands of `envelope`, Hz. `bands` must be the voice's number of
+     * bands. */
     Result<std::vector<double>> envelope_edges(size_t bands) const
     {
         std::vector<double> edges_hz(bands + 1);
@@ -197,12 +202,12 @@ public:
             return status;
         return edges_hz;
     }
-    /* Makes the voice as it was when it was made. */
+    /* Restarts the voice; see htex_voice_reset. */
     Status reset(const std::optional<Motion> &motion = {})
     {
         return status_of(htex_voice_reset(handle_.get(), motion ? &*motion : nullptr));
     }
-    /* Id of the model that plays. */
+    /* Returns the id of the model that plays. */
     Result<std::string> model() const
     {
         return detail::text([&](char *out, size_t capacity, size_t *length) {
@@ -222,14 +227,14 @@ private:
     detail::Owned<htex_voice, htex_voice_free> handle_;
 };
 
-/* The engine of WASM modules; see htex_open_options. */
+/* The engine that runs WASM modules; see htex_open_options. */
 enum class Engine : uint32_t {
     off = HTEX_ENGINE_OFF,
     checked = HTEX_ENGINE_CHECKED,
     with_signals = HTEX_ENGINE_SIGNALS,
 };
 
-/* Options of opening; see htex_open_options. */
+/* Options for opening an asset or a scene; see htex_open_options. */
 struct OpenOptions {
     std::vector<std::string> plugins;
     std::vector<std::vector<uint8_t>> modules;
@@ -260,7 +265,7 @@ struct OpenOptions {
     }
 };
 
-/* An opened asset, which plays. [any thread] */
+/* An open asset, which makes voices. [any thread] */
 class Texture {
 public:
     Texture() noexcept = default;
@@ -282,7 +287,8 @@ public:
         return made(code, asset);
     }
 #endif
-    /* Opens an asset that the program reads; the reader is closed before this returns. */
+    /* Opens an asset whose bytes come from the program's own functions; see
+     * htex_asset_open_reader. */
     static Result<Texture> open(const Reader &reader, const OpenOptions &options = {})
     {
         htex_asset asset{};
@@ -332,7 +338,7 @@ public:
             return htex_asset_name(handle_.get(), out, capacity, length);
         });
     }
-    /* Band of the spectra. */
+    /* Returns the frequency band of the asset's spectra. */
     Result<Band> band() const
     {
         Band band{};
@@ -340,7 +346,7 @@ public:
             return status;
         return band;
     }
-    /* Level of a voice, RMS in the asset's unit. */
+    /* Returns the level at which a representation plays: RMS, in the asset's unit. */
     Result<double> level_rms(const std::optional<std::string> &model = {}, const std::optional<Motion> &at = {}) const
     {
         double level_rms = 0.0;
@@ -356,7 +362,7 @@ public:
             return htex_asset_unit(handle_.get(), out, capacity, length);
         });
     }
-    /* Ids of the models of the representations. */
+    /* Returns the model id of each representation. */
     Result<std::vector<std::string>> models() const
     {
         size_t count = 0;
@@ -384,7 +390,7 @@ public:
                 return status;
         return conditions;
     }
-    /* Magnitudes of the texture spectrum, in the asset's unit. */
+    /* Returns the spectrum that a recording of the voice would show; see htex_asset_magnitude. */
     Result<std::vector<double>> magnitude(const std::vector<double> &frequency_hz,
                                           const std::optional<std::string> &model = {},
                                           const std::optional<Motion> &at = {}) const
@@ -410,7 +416,7 @@ private:
     detail::Owned<htex_asset, htex_asset_free> handle_;
 };
 
-/* An opened library: a file with thousands of textures. [any thread] */
+/* An open library: a file with any number of textures. [any thread] */
 class Library {
 public:
     Library() noexcept = default;
@@ -427,7 +433,8 @@ public:
         return made(htex_library_open_wide(reinterpret_cast<const uint16_t *>(path.c_str()), &library), library);
     }
 #endif
-    /* Opens a library that the program reads, until it is freed. */
+    /* Opens a library whose bytes come from the program's own functions; see
+     * htex_library_open_reader. */
     static Result<Library> open(const Reader &reader)
     {
         htex_library library{};
@@ -439,7 +446,7 @@ public:
         return made(htex_library_from_bytes(bytes, len, &library), library);
     }
 
-    /* Opens a texture; reads only its bytes. */
+    /* Opens a texture of the library. Reads only the parts of the file that it needs. */
     Result<Texture> texture(const std::string &name, const OpenOptions &options = {}) const
     {
         htex_asset asset{};
@@ -468,7 +475,7 @@ public:
             return status;
         return count;
     }
-    /* The entries of a page of the index; see htex_library_page_json. */
+    /* Returns the entries of an index page as JSON; see htex_library_page_json. */
     Result<std::string> page_json(size_t page) const
     {
         return detail::text([&](char *out, size_t capacity, size_t *length) {
@@ -493,7 +500,7 @@ private:
     detail::Owned<htex_library, htex_library_free> handle_;
 };
 
-/* A playing scene. [one thread at a time] */
+/* A scene that plays; see htex_scene. [one thread at a time] */
 class Scene {
 public:
     Scene() noexcept = default;
@@ -512,7 +519,7 @@ public:
         });
     }
 #endif
-    /* A scene in memory, whose files the program reads. */
+    /* Opens a scene file in memory; the program supplies the other files of the scene. */
     static Result<Scene> from_bytes(const uint8_t *bytes, size_t len, const Files &files, double rate_hz = 0.0,
                                     const OpenOptions &options = {})
     {
@@ -562,26 +569,30 @@ private:
     detail::Owned<htex_scene, htex_scene_free> handle_;
 };
 
-/* A device that is open, by its name: what plays the samples. One that is freed before it is finished goes to rest. [one thread at a time] */
+/* An open device, which plays samples. If it is freed before `finish` was called, it goes to
+ * rest at once. [one thread at a time] */
 class Device {
 public:
     Device() noexcept = default;
 
-    /* The devices of the library as JSON; see htex_device_list_json. */
+    /* Returns the kinds of devices that the library can play on, as JSON; see
+     * htex_device_list_json. */
     static Result<std::string> list_json()
     {
         return detail::text([](char *out, size_t capacity, size_t *length) {
             return htex_device_list_json(out, capacity, length);
         });
     }
-    /* Settings, quantity, rates and what becomes of the samples as JSON; see htex_device_info_json. */
+    /* Returns a description of a device as JSON: its settings, the quantity of its samples, its
+     * sample rates; see htex_device_info_json. */
     static Result<std::string> info_json(const std::string &name, const std::string &settings = {})
     {
         return detail::text([&](char *out, size_t capacity, size_t *length) {
             return htex_device_info_json(name.c_str(), settings.c_str(), out, capacity, length);
         });
     }
-    /* Opens a device; `settings` are lines NAME=VALUE, and a rate of 0 is the device's own. */
+    /* Opens a device. `settings` holds lines of the form NAME=VALUE. A `rate_hz` of 0 selects
+     * the device's own sample rate. */
     static Result<Device> open(const std::string &name, const std::string &settings = {}, double rate_hz = 0.0)
     {
         htex_device device{};
@@ -595,7 +606,8 @@ public:
         htex_device_rate_hz(handle_.get(), &rate_hz);
         return rate_hz;
     }
-    /* Waits until the device takes samples, or the time is over. */
+    /* Passes samples to the device, as many as it takes within `timeout_ms`; `written` receives
+     * their number. */
     htex_status write(const float *samples, size_t frames, uint32_t timeout_ms, size_t &written) noexcept
     {
         return htex_device_write(handle_.get(), samples, frames, timeout_ms, &written);
@@ -605,7 +617,8 @@ public:
         counts.size = sizeof counts;
         return htex_device_status(handle_.get(), &counts);
     }
-    /* Plays what was written to its end, and keeps the result. */
+    /* Plays all samples that were written, then brings the device to rest; see
+     * htex_device_finish. */
     htex_status finish() noexcept { return htex_device_finish(handle_.get()); }
 
 private:

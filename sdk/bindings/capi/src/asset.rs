@@ -11,7 +11,8 @@ use crate::pointers::{needed_text, place, slice, slice_mut, text, write_text};
 use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
-/// An opened asset. Several threads may use it at the same time. Zero is not an asset.
+/// An open asset: a texture from a .htex file. Several threads may use it at the same time. An `id`
+/// of 0 never stands for an asset.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_asset {
@@ -19,7 +20,7 @@ pub struct htex_asset {
     pub id: u64,
 }
 
-/// A condition of a recording.
+/// A recorded condition: a speed and a normal force.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_condition {
@@ -54,7 +55,7 @@ pub(crate) fn keep(
     Ok(())
 }
 
-/// [any thread; reads a file] Opens an asset file. `options` may be NULL.
+/// [any thread; reads a file] Opens an asset file. `options` may be NULL for the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open(
     path: *const c_char,
@@ -69,7 +70,7 @@ pub unsafe extern "C" fn htex_asset_open(
     })
 }
 
-/// [any thread; reads a file] As htex_asset_open, for a Windows path in UTF-16.
+/// [any thread; reads a file] Does the same as htex_asset_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open_wide(
@@ -85,8 +86,9 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     })
 }
 
-/// [any thread; calls the reader] Opens an asset whose bytes the program reads. The reader is
-/// closed before this returns. `options` may be NULL.
+/// [any thread; calls the reader] Opens an asset whose bytes come from the program's own functions,
+/// `reader`. The library closes the reader before the call returns. `options` may be NULL for the
+/// defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open_reader(
     reader: *const htex_reader,
@@ -94,8 +96,8 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     out: *mut htex_asset,
 ) -> htex_status {
     guarded(|| {
-        // The reader first: if the options are invalid, it is dropped and thereby closed.
-        // SAFETY: the pointers are the caller's.
+        // The reader is made first, so that it is closed if the options are invalid. SAFETY: the
+        // pointers are the caller's.
         let (reader, models) = unsafe { (Reader::from_raw(reader)?, models(options)?) };
         let bytes = reader
             .read_whole()
@@ -105,7 +107,8 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     })
 }
 
-/// [any thread] Opens an asset in memory. The bytes are copied. `options` may be NULL.
+/// [any thread] Opens an asset in memory. The bytes are copied. `options` may be NULL for the
+/// defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_from_bytes(
     bytes: *const u8,
@@ -121,17 +124,18 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     })
 }
 
-/// [any thread] Frees an asset. Its voices continue to play. HTEX_STATUS_BUSY if another thread is
-/// using the asset.
+/// [any thread] Frees an asset. Its voices continue to play. Returns HTEX_STATUS_BUSY if another
+/// thread is using the asset.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
     guarded(|| ASSETS.remove(asset.id).map(drop))
 }
 
-/// [any thread] Writes the asset's manifest as JSON: name, conditions, representations, qualities
-/// and everything else that it states. At most `capacity` bytes are written, including a
-/// terminating zero. `length` receives the length without the zero, and may be NULL. With a
-/// `capacity` of 0 only the length is written.
+/// [any thread] Writes the asset's whole manifest as JSON: name, conditions, representations,
+/// measured errors and so on. Writes at most `capacity` bytes to `out`, including a terminating
+/// zero. If the text is longer, `out` receives its beginning and the call returns
+/// HTEX_STATUS_TRUNCATED. `length` receives the length of the whole text without the zero, and may
+/// be NULL. If `capacity` is 0, only the length is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_manifest_json(
     asset: htex_asset,
@@ -148,7 +152,8 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
     })
 }
 
-/// [any thread] Writes the asset's name, as htex_asset_manifest_json does.
+/// [any thread] Writes the asset's name. `out`, `capacity` and `length` work as in
+/// htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_name(
     asset: htex_asset,
@@ -163,7 +168,8 @@ pub unsafe extern "C" fn htex_asset_name(
     })
 }
 
-/// [any thread] Writes the unit of the samples, such as "N", as htex_asset_manifest_json does.
+/// [any thread] Writes the unit of the samples, such as "N". `out`, `capacity` and `length` work as
+/// in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_unit(
     asset: htex_asset,
@@ -203,7 +209,7 @@ pub unsafe extern "C" fn htex_asset_condition_count(
     })
 }
 
-/// [any thread] Writes a recorded condition. Indices start at 0.
+/// [any thread] Writes the recorded condition at `index`. Indices start at 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_condition(
     asset: htex_asset,
@@ -225,7 +231,8 @@ pub unsafe extern "C" fn htex_asset_condition(
     })
 }
 
-/// [any thread] Writes the number of representations.
+/// [any thread] Writes the number of representations. A representation is one model fitted to the
+/// asset's recording.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_representation_count(
     asset: htex_asset,
@@ -239,8 +246,8 @@ pub unsafe extern "C" fn htex_asset_representation_count(
     })
 }
 
-/// [any thread] Writes the model id of a representation, as htex_asset_manifest_json does. Indices
-/// start at 0.
+/// [any thread] Writes the model id of the representation at `index`, such as "org.htex.bands".
+/// Indices start at 0. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_representation_model(
     asset: htex_asset,
@@ -260,11 +267,13 @@ pub unsafe extern "C" fn htex_asset_representation_model(
     })
 }
 
-/// [any thread; may load a model] Writes the magnitudes that a recording of the voice would show,
-/// in the asset's unit, at frequencies in Hz. `model` may be NULL for the representation with the
-/// smallest error. `at` may be NULL for its first condition, or its strongest if the first is
-/// silent. Between conditions the magnitude is interpolated, outside them it follows the asset's
-/// law, and where the finger does not slide it is 0.
+/// [any thread; may load a model] Writes the spectrum that a recording of the voice would show: one
+/// magnitude, in the asset's unit, for each of the `len` frequencies in Hz. `model` is the id or
+/// short name of the representation's model; NULL selects the representation with the smallest
+/// error. `at` is the motion; NULL selects the first recorded condition, or the strongest one if
+/// the first is silent. Between recorded conditions, the magnitudes are interpolated. Outside them,
+/// the magnitudes follow the asset's law, which states how frequency and level change with speed
+/// and force. If the finger does not slide, they are 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(
     asset: htex_asset,
@@ -288,8 +297,8 @@ pub unsafe extern "C" fn htex_asset_magnitude(
     })
 }
 
-/// [any thread; may load a model] Writes the level of a representation's voice, RMS in the asset's
-/// unit. `model` and `at` are as for htex_asset_magnitude.
+/// [any thread; may load a model] Writes the level at which a representation plays: the RMS of the
+/// samples, in the asset's unit. `model` and `at` work as in htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_level_rms(
     asset: htex_asset,

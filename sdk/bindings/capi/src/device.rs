@@ -1,11 +1,11 @@
-//! Devices play samples, and are selected by name. Without the feature `scene`, each call returns
-//! an error that says so.
+//! Devices play samples. A program selects a device by its name. Without the feature `scene`, each
+//! call returns an error that names this feature.
 
 use std::ffi::c_char;
 
 use crate::status::htex_status;
 
-/// An open device. Only one thread at a time may use it. Zero is not a device.
+/// An open device. Only one thread at a time may use it. An `id` of 0 never stands for a device.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_device {
@@ -24,7 +24,7 @@ pub struct htex_device_counts {
     pub frames_written: u64,
     /// Number of samples played.
     pub frames_played: u64,
-    /// Number of times the device ran out of samples.
+    /// Number of times that the device ran out of samples.
     pub underruns: u64,
     /// Time from writing a sample to its output, s.
     pub latency_s: f64,
@@ -32,9 +32,10 @@ pub struct htex_device_counts {
     pub peak: f64,
 }
 
-/// [any thread; asks drivers] Writes the devices of this library as JSON. Each has `id`, `name`,
-/// `endpoints` (the names of what is connected now) and `problem`, which is null or says what to
-/// install. Written as by htex_asset_manifest_json.
+/// [any thread; asks drivers] Writes a JSON array of the kinds of devices that this library can
+/// play on. Each has an `id`, a `name`, `endpoints` (the devices of this kind that are connected
+/// now) and a `problem`. `problem` is null, or states why the endpoints cannot be listed, for
+/// example what to install. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_list_json(
     out: *mut c_char,
@@ -45,10 +46,12 @@ pub unsafe extern "C" fn htex_device_list_json(
     unsafe { calls::list_json(out, capacity, length) }
 }
 
-/// [any thread; asks drivers] Writes a device as JSON. `descriptor` has its settings and says what
-/// happens to the samples (`mapping`). `capabilities` holds what it can do with these settings: the
-/// quantity of its samples, rates, the largest magnitude. If it cannot be used with them,
-/// `capabilities` is null and `problem` says why. `settings` is as in htex_device_open.
+/// [any thread; asks drivers] Writes a description of a device as JSON. `descriptor` lists the
+/// device's settings and states what happens to the samples (`mapping`). `capabilities` states what
+/// the device can do with the given settings: the quantity of its samples, its sample rates and its
+/// largest magnitude. If the device cannot be used with these settings, `capabilities` is null and
+/// `problem` states the reason. `name` and `settings` are as in htex_device_open. `out`, `capacity`
+/// and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_info_json(
     name: *const c_char,
@@ -61,12 +64,13 @@ pub unsafe extern "C" fn htex_device_info_json(
     unsafe { calls::info_json(name, settings, out, capacity, length) }
 }
 
-/// [any thread; asks drivers] Opens a device at rest: `sdl`, `parametric`, `channels`, `file`, or
-/// its id. `settings` holds lines NAME=VALUE; NULL for the defaults. `rate_hz` is the sample rate;
-/// 0 for the device's own. Samples have the quantity that htex_device_info_json states. A texture's
-/// samples in newtons become fractions of full scale through the gain of its voice. A display
-/// driven by a voltage cannot be opened here: it needs a separate process that removes the voltage
-/// if the program dies (`htex play`).
+/// [any thread; asks drivers] Opens a device, which is then at rest. `name` is its short name, such
+/// as `sdl`, `parametric`, `channels` or `file`, or its id. `settings` holds lines of the form
+/// NAME=VALUE; NULL selects the defaults. `rate_hz` is the sample rate; 0 selects the device's own.
+/// The device expects samples in the quantity that htex_device_info_json states. If it expects
+/// fractions of full scale, set the gain of the voice so that it converts the texture's newtons to
+/// them. This call refuses a display that is driven by a voltage: such a display needs a separate
+/// process that removes the voltage if the program dies, as `htex play` starts it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_open(
     name: *const c_char,
@@ -78,16 +82,17 @@ pub unsafe extern "C" fn htex_device_open(
     unsafe { calls::open(name, settings, rate_hz, out) }
 }
 
-/// [one thread at a time] Writes the sample rate, Hz.
+/// [one thread at a time] Writes the device's sample rate, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_rate_hz(device: htex_device, out: *mut f64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::rate_hz(device, out) }
 }
 
-/// [one thread at a time; waits] Passes samples to a device, as many as it accepts within
-/// `timeout_ms`, and writes their number to `written`. The first samples start the device. If later
-/// samples arrive too late, it goes to rest and the call fails. After an error it stays at rest.
+/// [one thread at a time; waits] Passes samples to a device. The device takes as many as it can
+/// within `timeout_ms`, and the call writes their number to `written`. The first samples start the
+/// device. If later samples arrive too late, the device goes to rest and the call fails. After an
+/// error it stays at rest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_write(
     device: htex_device,
@@ -100,7 +105,8 @@ pub unsafe extern "C" fn htex_device_write(
     unsafe { calls::write(device, samples, frames, timeout_ms, written) }
 }
 
-/// [one thread at a time] Writes what the device has done so far.
+/// [one thread at a time] Writes how many samples the device has played, and its other counts. Set
+/// `out->size` before the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_status(
     device: htex_device,
@@ -110,15 +116,16 @@ pub unsafe extern "C" fn htex_device_status(
     unsafe { calls::status(device, out) }
 }
 
-/// [one thread at a time; waits] Plays everything that was written, goes to rest, and saves the
-/// result: a file appears under its name. Nothing can be written afterwards.
+/// [one thread at a time; waits] Plays all samples that were written, then brings the device to
+/// rest. The device `file` saves its file under the final name. No more samples can be written
+/// afterwards.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_finish(device: htex_device) -> htex_status {
     calls::finish(device)
 }
 
-/// [one thread at a time; may wait] Frees a device. If htex_device_finish was not called, the
-/// device goes to rest at once and leaves no file behind.
+/// [one thread at a time; may wait] Frees a device. If htex_device_finish was not called before,
+/// the device goes to rest at once, and the device `file` leaves no file behind.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_free(device: htex_device) -> htex_status {
     calls::free(device)
@@ -132,7 +139,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! Replacements in a library without devices.
+    //! Stand-ins for a library that is built without devices.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -1,9 +1,10 @@
-//! Handles of objects: an index and a generation, so that the handle of a freed object is
-//! recognised.
+//! Handles of objects. A handle holds an index and a generation. The generation shows whether the
+//! object was freed.
 //!
-//! A lookup neither locks nor allocates. Either one thread uses an object or several read it. A
-//! counter in the object's slot records which, and a call that would break the rule fails at once.
-//! Handles carry their type, so passing a voice where an asset is expected is an error.
+//! A lookup neither locks nor allocates. At any time, either one thread uses an object exclusively,
+//! or any number of threads read it. A counter in the object's slot enforces this rule: a call that
+//! would break it fails at once. Handles carry the kind of their object, so passing a voice where
+//! an asset is expected is an error.
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
@@ -16,7 +17,8 @@ use crate::status::{Failure, htex_status};
 const FIRST: usize = 64;
 const CHUNKS: usize = 20;
 
-/// The lower half of a handle is the index plus one, below the bits of the kind.
+/// The lower half of a handle holds the kind in its upper bits, and the index plus one in the bits
+/// below.
 // 5 of the 32 bits remain for the kind.
 const KIND_SHIFT: u32 = 27;
 const _: () = assert!(FIRST << CHUNKS <= 1 << KIND_SHIFT);
@@ -36,9 +38,9 @@ pub(crate) enum Kind {
     Index = 5,
 }
 
-/// Value of the user count while one thread uses an object exclusively.
+/// Value of a slot's number of users while one thread uses the object exclusively.
 const EXCLUSIVE: u64 = u32::MAX as u64;
-/// Largest number of simultaneous readers; far more than there are threads.
+/// Largest number of threads that can read an object at the same time; far more than a program has.
 const MOST_USERS: u64 = EXCLUSIVE - 1;
 
 /// The objects of one kind.
@@ -48,12 +50,12 @@ pub(crate) struct Table<T> {
     spare: Mutex<Spare>,
 }
 
-/// Free indices, and how many indices were made since the table was last cleared.
+/// The free indices, and the number of indices that were created since the table was last cleared.
 struct Spare {
     free: Vec<usize>,
     made: usize,
-    /// Generation of an unused slot. It is above the generations of handles from before the table
-    /// was cleared.
+    /// Generation of a slot that was never used. It is greater than the generations of all handles
+    /// from before the table was cleared.
     unused: u64,
 }
 
@@ -62,7 +64,7 @@ struct Slot<T> {
     /// The upper half is the generation, which is odd while the slot holds an object. The lower
     /// half is the number of users.
     state: AtomicU64,
-    /// Boxed, so that the slots of a table that is hardly used stay small.
+    /// Boxed, so that a slot without an object takes little memory.
     value: UnsafeCell<Option<Box<T>>>,
 }
 
@@ -104,18 +106,19 @@ impl<T: Send + 'static> Table<T> {
             return Err(FULL);
         };
         let next = generation(slot.state.load(Ordering::Relaxed)) + 1;
-        // A generation is never used twice, as in `remove`.
+        // A generation is never used twice; see `remove`.
         if next >= EXCLUSIVE {
             return Err(FULL);
         }
         // SAFETY: the slot is empty, its index was spare, and the lock is held.
         unsafe { *slot.value.get() = Some(value) };
-        // After the value: a thread that sees the new generation also sees the value.
+        // Stored after the value, so that a thread that sees the new generation also sees the
+        // value.
         slot.state.store(next << 32, Ordering::Release);
         Ok(next << 32 | (self.kind as u64) << KIND_SHIFT | (index as u64 + 1))
     }
 
-    /// Makes the chunk of an index if this is the first index in it.
+    /// Allocates the chunk of an index if this is the first index in the chunk.
     fn make_chunk(&self, index: usize, unused: u64) -> Result<(), Failure> {
         let (chunk, _) = place(index);
         let pointer = self.chunks.get(chunk).ok_or(FULL)?;
@@ -146,22 +149,22 @@ impl<T: Send + 'static> Table<T> {
         let index = index.checked_sub(1).ok_or(BAD)? as usize;
         let slot = self.slot(index).ok_or(BAD)?;
         let wanted = generation(handle);
-        // Only a first look, so the order does not matter: `enter` checks the generation again. An
-        // even generation marks an empty slot.
+        // This is only a first check, so a relaxed load suffices: `enter` checks the generation
+        // again. An even generation marks an empty slot.
         if wanted.is_multiple_of(2) || generation(slot.state.load(Ordering::Relaxed)) != wanted {
             return Err(BAD);
         }
         Ok((slot, wanted, index))
     }
 
-    /// Changes the number of users of a slot with this generation by `change`, which returns `None`
-    /// if entry is not allowed.
+    /// Applies `change` to the number of users of a slot that has this generation. `change` returns
+    /// `None` if the caller may not use the object now.
     fn enter(
         slot: &Slot<T>,
         wanted: u64,
         change: impl Fn(u64) -> Option<u64>,
     ) -> Result<(), Failure> {
-        // Pairs with the releases in `insert` and in the drops of earlier users.
+        // Pairs with the release stores in `insert` and in the `drop` of earlier users.
         let result = slot.state.fetch_update(Ordering::Acquire, Ordering::Relaxed, |state| {
             (generation(state) == wanted)
                 .then(|| change(users(state)).map(|users| wanted << 32 | users))
@@ -174,7 +177,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// Returns the object of a handle, for this call only.
+    /// Returns the object of a handle for exclusive use, until the result is dropped.
     pub(crate) fn exclusive(&self, handle: u64) -> Result<Exclusive<T>, Failure> {
         let (slot, wanted, _) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
@@ -185,7 +188,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// Returns the object of a handle, which other threads may read at the same time.
+    /// Returns the object of a handle for reading. Other threads may read it at the same time.
     pub(crate) fn shared(&self, handle: u64) -> Result<Shared<T>, Failure>
     where
         T: Sync,
@@ -199,33 +202,33 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// Removes an object. Its handle is then invalid.
+    /// Removes an object and returns it. Its handle is then invalid.
     pub(crate) fn remove(&self, handle: u64) -> Result<T, Failure> {
         let (slot, wanted, index) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: this is the only user.
         let value = unsafe { (*slot.value.get()).take() };
         slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
-        // After the slot is empty, because the next `insert` may take it at once.
+        // Only after the slot is empty, because the next `insert` may take it at once.
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-        // The last generation is not reused: after it, the counter would start again, and an old
-        // handle would match a new object.
+        // A slot that reached the last generation is not used again: its counter would start at 0
+        // again, and an old handle would match a new object.
         if wanted + 1 < EXCLUSIVE {
             spare.free.push(index);
         }
         value.map(|value| *value).ok_or(BAD)
     }
 
-    /// Frees all objects and slots; their handles stay invalid. Frees nothing if an object is in
-    /// use.
+    /// Frees all objects and slots. Their handles stay invalid afterwards. If an object is in use,
+    /// frees nothing and returns an error.
     ///
     /// # Safety
     /// No other thread uses this table during the call.
     pub(crate) unsafe fn clear(&self) -> Result<(), Failure> {
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let mut highest = spare.unused;
-        // All slots are checked before anything is freed, so an object in use leaves the table as
-        // it is.
+        // Checks all slots before anything is freed, so that the table stays as it is if an object
+        // is in use.
         for slot in (0..spare.made).filter_map(|index| self.slot(index)) {
             let state = slot.state.load(Ordering::Acquire);
             if users(state) != 0 {
@@ -251,7 +254,7 @@ impl<T: Send + 'static> Table<T> {
     }
 }
 
-/// Returns the chunk of an index, and the offset in that chunk.
+/// Returns the chunk that contains an index, and the offset in this chunk.
 const fn place(index: usize) -> (usize, usize) {
     let chunk = (index / FIRST + 1).ilog2() as usize;
     (chunk, index - FIRST * ((1 << chunk) - 1))
@@ -270,13 +273,14 @@ const FULL: Failure = Failure::plain(
     "67 million objects of a kind are in use; free some",
 );
 
-/// An object that only this call uses.
+/// An object that one thread uses exclusively, until this is dropped.
 pub(crate) struct Exclusive<T: 'static> {
     value: &'static mut T,
     slot: &'static Slot<T>,
 }
 
-/// An object that this call reads, perhaps together with others.
+/// An object that this thread reads, until this is dropped. Other threads may read it at the same
+/// time.
 pub(crate) struct Shared<T: 'static> {
     value: &'static T,
     slot: &'static Slot<T>,

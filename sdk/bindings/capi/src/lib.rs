@@ -1,12 +1,13 @@
 //! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h`
 //! is generated from this crate.
 //!
-//! - Objects are handles, one number each. A freed handle, a number that is not a handle, or an
-//!   object that another thread is using is an error, not undefined behaviour (`handles`).
-//! - A call returns a [`htex_status`]. The text of a thread's last error is [`htex_last_error`]. No
-//!   call unwinds.
-//! - A struct of options begins with its size in bytes. Zero in the other fields selects the
-//!   defaults, so programs that were compiled against an older header still run.
+//! - C refers to objects by handles, which are numbers. If a handle was freed, if a number was
+//!   never a handle, or if another thread is using the object, the call returns an error; it is not
+//!   undefined behaviour (`handles`).
+//! - A call returns a [`htex_status`]. [`htex_last_error`] returns the text of the calling thread's
+//!   last error. No call unwinds.
+//! - A struct of options begins with its size in bytes. Zero in any other field selects its
+//!   default, so programs that were compiled against an older header still run.
 #![warn(missing_docs)]
 #![allow(non_camel_case_types)] // The names of the C header.
 #![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
@@ -84,18 +85,19 @@ pub use voice::{
     htex_voice_set_motion,
 };
 
-/// Version of this interface, major and minor: 0x00010000 is 1.0. A new minor version only adds to
-/// it.
+/// Version of this interface: the major version in the upper 16 bits, the minor version in the
+/// lower 16. 0x00010000 is 1.0. A new minor version only adds functions, fields and values.
 pub const HTEX_API_VERSION: u32 = 0x0001_0000;
 
-/// [any thread] Returns the interface version of the loaded library, in the form of
+/// [any thread] Returns the interface version of the loaded library, in the same format as
 /// HTEX_API_VERSION.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_api_version() -> u32 {
     HTEX_API_VERSION
 }
 
-/// [any thread] Returns the version of the library, such as "0.2.0". The text is static.
+/// [any thread] Returns the version of the library, such as "0.2.0". The text stays valid and must
+/// not be freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_version() -> *const std::ffi::c_char {
     const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

@@ -1,5 +1,5 @@
-//! Libraries: files with thousands of textures. Without the feature `library`, each call returns an
-//! error that says so. So does each call in a browser, which has its own functions
+//! Libraries: files with thousands of textures. Without the feature `library`, and in browsers,
+//! each call returns an error that states this. Browsers have their own functions
 //! (`browser/library.rs`).
 
 use std::ffi::c_char;
@@ -9,7 +9,8 @@ use crate::options::htex_open_options;
 use crate::reader::htex_reader;
 use crate::status::htex_status;
 
-/// An opened library. Several threads may use it at the same time. Zero is not a library.
+/// An open library: a .htexlib file with any number of textures. Several threads may use it at the
+/// same time. An `id` of 0 never stands for a library.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_library {
@@ -17,8 +18,8 @@ pub struct htex_library {
     pub id: u64,
 }
 
-/// [any thread; reads a file] Opens a library file. The index is read page by page, and textures
-/// one at a time.
+/// [any thread; reads a file] Opens a library file. Later calls read from the file only the index
+/// pages and textures that they need.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open(
     path: *const c_char,
@@ -28,7 +29,7 @@ pub unsafe extern "C" fn htex_library_open(
     unsafe { calls::open(path, out) }
 }
 
-/// [any thread; reads a file] As htex_library_open, for a Windows path in UTF-16.
+/// [any thread; reads a file] Does the same as htex_library_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_wide(
@@ -50,8 +51,8 @@ pub unsafe extern "C" fn htex_library_from_bytes(
     unsafe { calls::from_bytes(bytes, len, out) }
 }
 
-/// [any thread; calls the reader] Opens a library whose bytes the program reads. The struct is
-/// copied. Its functions are called until the library is freed.
+/// [any thread; calls the reader] Opens a library whose bytes come from the program's own
+/// functions, `reader`. The struct is copied. The library calls its functions until it is freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
@@ -61,14 +62,15 @@ pub unsafe extern "C" fn htex_library_open_reader(
     unsafe { calls::open_reader(reader, out) }
 }
 
-/// [any thread] Frees a library. Its assets stay open. HTEX_STATUS_BUSY if another thread is using
-/// the library.
+/// [any thread] Frees a library. Assets that were opened from it stay open. Returns
+/// HTEX_STATUS_BUSY if another thread is using the library.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
     calls::free(library)
 }
 
-/// [any thread] Writes the library's name, which may be empty, as htex_asset_manifest_json does.
+/// [any thread] Writes the library's name, which may be empty. `out`, `capacity` and `length` work
+/// as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_name(
     library: htex_library,
@@ -80,14 +82,15 @@ pub unsafe extern "C" fn htex_library_name(
     unsafe { calls::name(library, out, capacity, length) }
 }
 
-/// [any thread] Writes the number of textures.
+/// [any thread] Writes the number of textures in the library.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_count(library: htex_library, out: *mut u64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::count(library, out) }
 }
 
-/// [any thread] Writes the number of pages in the index.
+/// [any thread] Writes the number of pages in the library's index. Each page lists some of the
+/// textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_count(
     library: htex_library,
@@ -97,9 +100,10 @@ pub unsafe extern "C" fn htex_library_page_count(
     unsafe { calls::page_count(library, out) }
 }
 
-/// [any thread; reads the file] Writes the entries of a page of the index as a JSON array: the
-/// textures' names in ascending order, tags, models, ranges of recorded speeds and forces, bytes
-/// and hashes. Page numbers start at 0. Written as by htex_asset_manifest_json.
+/// [any thread; reads the file] Writes a page of the index as a JSON array with one entry per
+/// texture, sorted by name. An entry has the texture's name, tags, models, ranges of recorded
+/// speeds and forces, size in bytes and hash. Page numbers start at 0. `out`, `capacity` and
+/// `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_json(
     library: htex_library,
@@ -112,8 +116,9 @@ pub unsafe extern "C" fn htex_library_page_json(
     unsafe { calls::page_json(library, page, out, capacity, length) }
 }
 
-/// [any thread; reads the file] Writes the entry of a texture as JSON, as in
-/// htex_library_page_json. HTEX_STATUS_ABSENT if there is no texture with this name.
+/// [any thread; reads the file] Writes the entry of the texture with this name as JSON, with the
+/// same contents as in htex_library_page_json. Returns HTEX_STATUS_ABSENT if there is no texture
+/// with this name. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_entry_json(
     library: htex_library,
@@ -126,8 +131,9 @@ pub unsafe extern "C" fn htex_library_entry_json(
     unsafe { calls::entry_json(library, name, out, capacity, length) }
 }
 
-/// [any thread; reads the file] Opens a texture of the library. HTEX_STATUS_ABSENT if there is no
-/// texture with this name. `options` may be NULL.
+/// [any thread; reads the file] Opens the texture with this name as an asset. Returns
+/// HTEX_STATUS_ABSENT if there is no texture with this name. `options` may be NULL for the
+/// defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_asset(
     library: htex_library,
@@ -147,7 +153,7 @@ pub(crate) use calls::clear;
 
 #[cfg(any(not(feature = "library"), target_family = "wasm"))]
 mod calls {
-    //! Replacements in a build without libraries.
+    //! Stand-ins for a build without libraries.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -1,4 +1,4 @@
-//! Messages for the user of a program: observations that are not an error of a call.
+//! Messages for the user of a program: observations that make no call fail.
 
 use std::ffi::{CString, c_char, c_void};
 use std::sync::{PoisonError, RwLock};
@@ -15,8 +15,8 @@ pub enum htex_log_level {
     HTEX_LOG_WARNING = 1,
 }
 
-/// Receives a message in UTF-8, which is valid during the call. `context` is the value that was
-/// passed to htex_set_log.
+/// A function of the program that receives messages. `message` is UTF-8 and is valid only during
+/// the call. `context` is the value that was passed to htex_set_log.
 pub type htex_log_callback = Option<
     unsafe extern "C" fn(level: htex_log_level, message: *const c_char, context: *mut c_void),
 >;
@@ -33,11 +33,11 @@ unsafe impl Sync for Log {}
 
 static LOG: RwLock<Option<Log>> = RwLock::new(None);
 
-/// [any thread] Sets the function that receives messages; NULL for none, which is the default. It
-/// is called in the thread of the call that produces the message, which is never a call that
-/// renders or sets a motion. It must not call back into the library.
+/// [any thread] Sets the function that receives messages. NULL, the default, discards them. The
+/// library calls the function in the thread of the call that causes the message. Calls that render
+/// or set a motion never cause messages. The function must not call the library.
 ///
-/// Once this returns, the previous function is not called any more.
+/// After htex_set_log returns, the library does not call the previous function any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_set_log(
     callback: htex_log_callback,
@@ -59,7 +59,7 @@ pub(crate) fn forget_log() {
 pub(crate) fn log(level: htex_log_level, message: &str) {
     // Held during the call, so that `htex_set_log` waits for it.
     let log = LOG.read().unwrap_or_else(PoisonError::into_inner);
-    // A message may quote a text with a zero, at which C would end it.
+    // A message may quote a text that contains a zero byte, where C would end the message.
     let (Some(log), Ok(message)) = (&*log, CString::new(message.replace('\0', " "))) else {
         return;
     };

@@ -1,4 +1,5 @@
-//! Memory that crosses the interface to JavaScript: allocated on one side, freed on the other.
+//! Memory that JavaScript and the library pass to each other: one side allocates it, the other
+//! frees it.
 
 use std::alloc::{Layout, alloc, dealloc};
 
@@ -11,7 +12,7 @@ fn layout(bytes: usize) -> Option<Layout> {
     Layout::from_size_align(size, ALIGNMENT).ok()
 }
 
-/// Allocates bytes, aligned to 8; NULL if there is no memory.
+/// Allocates bytes, aligned to 8. Returns NULL if there is not enough memory.
 pub fn allocate(bytes: usize) -> *mut u8 {
     // SAFETY: the size is not zero.
     layout(bytes).map_or(std::ptr::null_mut(), |layout| unsafe { alloc(layout) })
@@ -20,7 +21,7 @@ pub fn allocate(bytes: usize) -> *mut u8 {
 /// Frees memory from [`allocate`]. The number of bytes must be the same.
 ///
 /// # Safety
-/// The caller says so; NULL is no memory.
+/// The pointer comes from [`allocate`] with the same number of bytes and was not freed, or is NULL.
 pub unsafe fn free(at: *mut u8, bytes: usize) {
     if let Some(layout) = layout(bytes).filter(|_| !at.is_null()) {
         // SAFETY: as here.

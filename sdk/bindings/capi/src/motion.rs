@@ -1,4 +1,4 @@
-//! Motions in the form that C passes them.
+//! Motions as C passes them.
 
 use std::mem::offset_of;
 
@@ -7,8 +7,9 @@ use htex::Motion;
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// Motion of a finger over a texture at one moment. Later versions add optional values at the end.
-/// Values that a program's older header does not have count as unknown.
+/// Motion of a finger over a texture at one moment. Later versions may add optional values at the
+/// end. If a program was compiled against an older header, the values that this header lacks count
+/// as unknown.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_motion {
@@ -18,11 +19,11 @@ pub struct htex_motion {
     pub speed_mm_s: f64,
     /// Normal force, N; finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm, of either sign; NAN if unknown. Only models that follow the
-    /// position use it.
+    /// Position along the finger's path, mm, positive or negative; NAN if unknown. Only models that
+    /// follow the position use it.
     pub position_mm: f64,
-    /// Place on the surface: coordinate x, mm, of either sign. The place is unknown if x, y or both
-    /// are NAN. Only models that are maps of a surface use it.
+    /// Place on the surface: coordinate x, mm, positive or negative. If `x_mm` or `y_mm` is NAN,
+    /// the place is unknown. Only models that map a surface use the place.
     pub x_mm: f64,
     /// Coordinate y of the place, mm, at a right angle to `x_mm`.
     pub y_mm: f64,
@@ -47,16 +48,16 @@ const UNKNOWN: htex_motion = htex_motion {
     y_mm: f64::NAN,
 };
 
-/// Allowed sizes of a motion, bytes. Every version has at least speed and force.
+/// Allowed values of a motion's `size`, bytes. Every version has at least speed and force.
 // The upper end leaves room for later fields, and refuses a size that was never set.
 const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
 
-/// Returns the motions of a caller, which may have been compiled against a shorter or longer
-/// struct.
+/// Returns an array of motions from C. The program may have been compiled against a version of the
+/// struct that is shorter or longer than this one.
 ///
 /// # Safety
-/// As [`slice`], with the size that the first motion states. The motions exist as long as the
-/// iterator.
+/// As in [`slice`], where each motion has the size that the first one states. The motions must stay
+/// valid as long as the iterator.
 pub(crate) unsafe fn motions(
     pointer: *const htex_motion,
     len: usize,

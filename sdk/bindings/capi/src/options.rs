@@ -12,7 +12,7 @@ use crate::motion::{htex_motion, motion};
 use crate::pointers::{needed_text, slice, text};
 use crate::status::{Failure, htex_status};
 
-/// Bytes in memory.
+/// A block of bytes in memory.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_bytes {
@@ -22,25 +22,29 @@ pub struct htex_bytes {
     pub len: usize,
 }
 
-/// Modules are not loaded. A texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
+/// WASM modules are not loaded. A call that needs the model in such a module returns
+/// HTEX_STATUS_NO_MODEL.
 pub const HTEX_ENGINE_OFF: u32 = 0;
-/// Modules run without signal handlers: each memory access is checked against its bound.
+/// WASM modules run without signal handlers. Instead, their code checks the bounds of each memory
+/// access.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
-/// Modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
-/// remain after htex_shutdown, and pass on signals that do not come from a module. The model of
-/// `examples/model-c-bursts` then takes 34 ns per sample instead of 42.
+/// WASM modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
+/// stay installed after htex_shutdown. They pass on signals that do not come from a module. This is
+/// faster: for example, the model of `examples/model-c-bursts` takes 34 ns per sample instead of 42
+/// ns with HTEX_ENGINE_CHECKED.
 pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 
-/// Options for opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to
-/// zero for the defaults: only the built-in models, which create no threads, files or signal
-/// handlers.
+/// Options for opening an asset or a scene. Set `size` to sizeof(htex_open_options), and all other
+/// fields to zero for the defaults. The defaults use only the built-in models, which create no
+/// threads, files or signal handlers.
 ///
-/// Assets may embed models as WASM modules. These need an engine, which must be turned on. The
-/// library in `lib/whole` has one; in a build without it, turning it on gives
-/// HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is first used,
-/// unless `cache` has it. That takes 0.07 to 0.4 s for `examples/model-c-bursts`, and 5 s at most.
+/// Assets may embed models as WASM modules. To run them, turn on a WASM engine with `engine`. Only
+/// the library in `lib/whole` contains an engine. In other builds, opening an asset with an engine
+/// returns HTEX_STATUS_UNSUPPORTED. The engine compiles a module when it is first used, unless the
+/// compiled module is in `cache`. Compiling takes 0.07 to 0.4 s for `examples/model-c-bursts`.
 /// While a module is loaded, one thread wakes every 50 ms to stop calls that exceed their time
-/// limit. All resources are limited: 64 MiB of memory per voice, 0.5 s per block, 5 s to compile.
+/// limit. Modules have limits: 64 MiB of memory per voice, 0.5 s per block of samples and 5 s to
+/// compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_open_options {
@@ -48,70 +52,74 @@ pub struct htex_open_options {
     pub size: u32,
     /// HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS.
     pub engine: u32,
-    /// Model files to load: native libraries or WASM modules. A native library runs with all rights
-    /// of the program.
+    /// Paths of model files to load: native libraries or WASM modules. A native library runs with
+    /// all rights of the program.
     pub plugins: *const *const c_char,
     /// Number of `plugins`.
     pub plugins_len: usize,
-    /// WASM modules of models, in memory. They run in a sandbox. The bytes are only used during the
-    /// call.
+    /// Models as WASM modules in memory. They run in a sandbox. The library uses the bytes only
+    /// during the call.
     pub modules: *const htex_bytes,
     /// Number of `modules`.
     pub modules_len: usize,
-    /// Folder for compiled modules, created for this user only; NULL to write none. With a folder,
-    /// a key that authenticates its files is stored as `wasm.key` in the user's settings folder,
-    /// such as `~/.config/htex`.
+    /// Folder that keeps compiled WASM modules; NULL to keep none. The library creates the folder,
+    /// so that only this user can access it. It also stores a key that authenticates the files in
+    /// the folder, as `wasm.key` in the user's settings folder, such as `~/.config/htex`.
     pub cache: *const c_char,
-    /// If not 0, modules embedded in assets do not run even with an engine.
+    /// If not 0, WASM modules that are embedded in assets do not run, even if an engine is turned
+    /// on.
     pub no_embedded: u32,
-    /// If not 0, htex also looks for installed models, in the folders that HTEX_PLUGIN_PATH names
-    /// and in the user's folder.
+    /// If not 0, the library also loads installed models: from the folders in the environment
+    /// variable HTEX_PLUGIN_PATH, and from the user's plugin folder.
     pub installed: u32,
 }
 
-/// Options for making a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for
-/// the defaults.
+/// Options for making a voice. Set `size` to sizeof(htex_voice_options), and all other fields to
+/// zero for the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice_options {
     /// sizeof(htex_voice_options).
     pub size: u32,
-    /// The model of the representation, by its id or short name; NULL for the representation with
-    /// the smallest error.
+    /// Id or short name of the model whose representation plays; NULL selects the representation
+    /// with the smallest error.
     pub model: *const c_char,
     /// Sample rate, Hz, at least twice the asset's highest frequency; 0 for 20000.
     pub rate_hz: f64,
-    /// Seed of the noise. Equal seeds give equal samples.
+    /// Seed of the noise. Voices with equal seeds, options and motions give equal samples.
     pub seed: u64,
-    /// Motion at the start; NULL for the first recorded condition, or the strongest if the first is
-    /// silent.
+    /// Motion at the start; NULL selects the first recorded condition, or the strongest one if the
+    /// first is silent.
     pub motion: *const htex_motion,
-    /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL for streamed.
+    /// How samples are made. "streamed" (or NULL): the model computes each sample. "loop:SECONDS":
+    /// a sound of this length is computed once and repeated. "filter:TAPS": noise goes through a
+    /// filter with this number of taps.
     pub synthesis: *const c_char,
-    /// Gain of the samples; 0 for 1. htex_voice_set_gain changes it.
+    /// Gain of the samples; 0 selects a gain of 1. htex_voice_set_gain changes it later.
     pub gain: f64,
     /// Largest absolute value of a sample after the gain, in the asset's unit; 0 for no limit. The
     /// gain drops at once when a sample would exceed the limit, and recovers with a time constant
     /// of 50 ms.
     pub limit: f64,
-    /// Number of bands in htex_voice_envelope, 1 to 32; 0 switches the envelope off and costs no
-    /// time.
+    /// Number of bands that htex_voice_envelope returns, 1 to 32. 0 switches the envelope off,
+    /// which saves its computing time.
     pub envelope_bands: u32,
-    /// If not 0, frequencies do not follow speeds beyond the recorded ones.
+    /// If not 0, frequencies do not change any further at speeds outside the recorded range.
     pub no_frequency_scaling: u32,
-    /// If not 0, the level does not follow forces beyond the recorded ones.
+    /// If not 0, the level does not change any further at forces outside the recorded range.
     pub no_level_scaling: u32,
-    /// If not 0, a finger at rest is not silent.
+    /// If not 0, the voice also plays while the finger is at rest.
     pub no_contact: u32,
-    /// Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
-    /// recorded level; above 0 and finite. 0 for 4.
+    /// Highest level that the voice reaches at motions outside the recorded conditions, as a
+    /// multiple of the strongest recorded level. Must be positive and finite; 0 selects 4.
     pub ceiling: f64,
 }
 
 /// Reads the first `size` bytes of a struct of options, with zeros for the rest.
 ///
 /// # Safety
-/// NULL, or `size` bytes of a struct `T` that begins with its size.
+/// The pointer is NULL, or points to a struct `T` that begins with its size, as a `u32`, and has
+/// this many bytes.
 pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, Failure> {
     if pointer.is_null() {
         return Ok(zeros);
@@ -122,7 +130,7 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     // Nothing else may be read yet, because the struct of an older program is shorter.
     // SAFETY: the struct begins with its size.
     let size = unsafe { pointer.cast::<u32>().read() } as usize;
-    // Far more than any version has. A larger size was never set.
+    // 4096 is far more than any version of a struct has. The `size` of a larger one was never set.
     if !(size_of::<u32>()..=4096).contains(&size) {
         return Err(Failure::argument(
             "the options' `size` is wrong; set it to the sizeof of their struct",
@@ -149,7 +157,7 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     Ok(options)
 }
 
-/// The models, and whether embedded models may run.
+/// The models of a call, and whether embedded models may run.
 pub(crate) struct Models {
     pub(crate) registry: Registry,
     pub(crate) embedded: bool,
@@ -204,8 +212,8 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     Ok(Models { registry, embedded: options.no_embedded == 0 && engine != WasmEngine::Off })
 }
 
-/// Returns the engine for a number. An engine that this build lacks is an error here, not where a
-/// module is first used.
+/// Returns the engine for a number. If this build lacks the engine, this fails here rather than
+/// when a module is first used.
 fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     match number {
         HTEX_ENGINE_CHECKED | HTEX_ENGINE_SIGNALS if !is_built => Err(Failure::plain(
@@ -222,10 +230,10 @@ fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     }
 }
 
-/// Reads the model and the other options.
+/// Reads the options of a voice: the model's name, and the rest.
 ///
 /// # Safety
-/// As [`options`]; the text lives as long as the result.
+/// As in [`options`]. The text must stay valid as long as the result.
 pub(crate) unsafe fn voice_options<'a>(
     pointer: *const htex_voice_options,
 ) -> Result<(Option<&'a str>, VoiceOptions), Failure> {
@@ -263,7 +271,8 @@ pub(crate) unsafe fn voice_options<'a>(
         .with_synthesis(synthesis)
         .with_envelope_bands(options.envelope_bands as usize)
         .with_effects(effects);
-    // Only an exact zero is the default. NaN and negative numbers go on and are refused.
+    // Only an exact zero selects the default. NaN and negative numbers are passed on, and the
+    // library refuses them.
     if options.rate_hz != 0.0 {
         voice = voice.with_rate_hz(options.rate_hz);
     }

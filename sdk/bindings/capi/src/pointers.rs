@@ -1,12 +1,12 @@
-//! Converts C pointers to Rust values. The caller of a C function guarantees what C cannot check: a
-//! pointer that is not NULL points to as many values as its length says, and they stay valid during
-//! the call.
+//! Converts C pointers to Rust values. The caller of a C function guarantees what the library
+//! cannot check: a pointer that is not NULL points to as many values as its length states, and the
+//! values stay valid during the call.
 
 use std::ffi::{CStr, c_char};
 
 use crate::status::{Failure, htex_status};
 
-/// The values at `pointer`; an empty slice for a length of 0.
+/// Returns the values at `pointer`, or an empty slice for a length of 0.
 ///
 /// # Safety
 /// As the module says.
@@ -20,10 +20,10 @@ pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Fai
     Ok(unsafe { std::slice::from_raw_parts(pointer, len) })
 }
 
-/// As [`slice`], for writing.
+/// Does the same as [`slice`], for values that are written.
 ///
 /// # Safety
-/// As the module says, and nothing else uses the values during the call.
+/// As the module states. In addition, nothing else uses the values during the call.
 pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], Failure> {
     if len == 0 {
         return Ok(&mut []);
@@ -44,7 +44,7 @@ fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns a reference to where a result is written.
+/// Returns a reference to the place that receives a result.
 ///
 /// # Safety
 /// As the module says.
@@ -56,7 +56,7 @@ pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     Ok(unsafe { &mut *pointer })
 }
 
-/// Returns a text; `None` for NULL.
+/// Returns a text, or `None` for NULL.
 ///
 /// # Safety
 /// As the module says: the text ends with a zero byte.
@@ -81,7 +81,7 @@ pub unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
 }
 
-/// Returns a Windows path, UTF-16 with a terminating zero.
+/// Returns a Windows path. `path` is UTF-16 with a terminating zero.
 ///
 /// # Safety
 /// As [`text`].
@@ -101,8 +101,8 @@ pub(crate) unsafe fn wide_path(path: *const u16) -> Result<std::path::PathBuf, F
     Ok(std::ffi::OsString::from_wide(units).into())
 }
 
-/// Writes a text with a terminating zero, and its length without the zero to `length`, unless that
-/// is NULL. With a `capacity` of 0 only the length is written.
+/// Writes a text with a terminating zero to `out`, and its length without the zero to `length`.
+/// `length` may be NULL. If `capacity` is 0, only the length is written.
 ///
 /// # Safety
 /// As the module says.
@@ -112,7 +112,7 @@ pub(crate) unsafe fn write_text(
     capacity: usize,
     length: *mut usize,
 ) -> Result<(), Failure> {
-    // Before any error, so that a caller whose buffer is too small learns the length.
+    // Written first, so that a caller whose buffer is too small also gets the length.
     if !length.is_null() {
         // SAFETY: as here.
         *unsafe { place(length) }? = text.len();
@@ -126,7 +126,7 @@ pub(crate) unsafe fn write_text(
             Ok(())
         };
     };
-    // Also what is cut off must be UTF-8.
+    // The beginning of a text that is cut off must also be valid UTF-8.
     let len = text.floor_char_boundary(space);
     out[..len].copy_from_slice(&text.as_bytes()[..len]);
     out[len] = 0;

@@ -1,4 +1,4 @@
-//! Files whose bytes the program reads for the library: from archives, app packages, or memory.
+//! Files that the program reads for the library, for example from archives, app packages or memory.
 
 #[cfg(feature = "scene")]
 use std::ffi::CString;
@@ -8,7 +8,8 @@ use std::io;
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// A file whose bytes the program reads. Set `size` to sizeof(htex_reader).
+/// A file that the library reads through functions of the program. Set `size` to
+/// sizeof(htex_reader).
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_reader {
@@ -16,15 +17,16 @@ pub struct htex_reader {
     pub size: u32,
     /// Size of the file, bytes.
     pub len: u64,
-    /// First argument passed to the functions.
+    /// First argument that the library passes to `read` and `close`.
     pub context: *mut c_void,
-    /// Fills `buffer` with the `len` bytes at `offset`, which lie within the file. Returns 0, or
-    /// another number for an error. It is called in the thread of a library call; for a library of
-    /// textures, several threads may call it at the same time.
+    /// Must fill `buffer` with the `len` bytes at `offset`, and return 0, or another number for an
+    /// error. The bytes always lie within the file. The library calls this function in the thread
+    /// that called the library. If the file is a library of textures, several threads may call it
+    /// at the same time.
     pub read: Option<
         unsafe extern "C" fn(context: *mut c_void, offset: u64, buffer: *mut u8, len: usize) -> i32,
     >,
-    /// Called once when the file is no longer read, also after an error; may be NULL.
+    /// Called once when the library no longer reads the file, also after an error. May be NULL.
     pub close: Option<unsafe extern "C" fn(context: *mut c_void)>,
 }
 
@@ -34,10 +36,10 @@ pub struct htex_reader {
 pub struct htex_files {
     /// sizeof(htex_files).
     pub size: u32,
-    /// First argument passed to `open`.
+    /// First argument that the library passes to `open`.
     pub context: *mut c_void,
-    /// Opens the file with a name as the scene states it (UTF-8), and fills `file`, whose `size` is
-    /// set. Returns 0, or another number if there is no such file.
+    /// Must open the file with this name and fill in `file`, whose `size` is already set. Returns
+    /// 0, or another number if there is no such file. `name` is UTF-8, as it stands in the scene.
     pub open: Option<
         unsafe extern "C" fn(
             context: *mut c_void,
@@ -47,10 +49,11 @@ pub struct htex_files {
     >,
 }
 
-/// Largest size, bytes, of a file that is read at once. Recorded motions are the largest.
+/// Largest size, bytes, of a file that is read as a whole. The largest such files are recorded
+/// motions.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// A file that the program reads. It is closed when it is dropped.
+/// A file that is read through functions of the program. It is closed when it is dropped.
 #[derive(Debug)]
 pub(crate) struct Reader {
     len: u64,
@@ -66,7 +69,7 @@ unsafe impl Sync for Reader {}
 
 impl Reader {
     /// # Safety
-    /// NULL, or a reader of the caller.
+    /// The pointer is NULL, or points to a reader of the caller.
     pub(crate) unsafe fn from_raw(reader: *const htex_reader) -> Result<Self, Failure> {
         // SAFETY: as here.
         let reader = unsafe { slice(reader, 1) }?[0];
@@ -74,7 +77,7 @@ impl Reader {
     }
 
     fn new(reader: &htex_reader) -> Result<Self, Failure> {
-        // A longer struct comes from a newer header, which begins in the same way.
+        // A longer struct comes from a newer header. It begins with the same fields.
         if (reader.size as usize) < size_of::<htex_reader>() {
             return Err(Failure::argument(
                 "the reader's `size` is wrong; set it to sizeof(htex_reader)",
@@ -95,7 +98,8 @@ impl Reader {
         self.len
     }
 
-    /// Fills the buffer and returns how many bytes the file had there.
+    /// Fills the buffer with the bytes at `offset`. Returns their number, which is smaller than the
+    /// buffer at the end of the file.
     pub(crate) fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
         let there = self.len.saturating_sub(offset);
         let len = usize::try_from(there).map_or(buffer.len(), |there| there.min(buffer.len()));
@@ -117,7 +121,7 @@ impl Reader {
             let what = format!("{} bytes; at most {MOST_BYTES} are read", self.len);
             return Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
         }
-        // The limit above also fits into 32 bits.
+        // The limit above fits into 32 bits, so this cast loses nothing.
         let mut bytes = vec![0; self.len as usize];
         self.read_at(0, &mut bytes)?;
         Ok(bytes)
@@ -133,7 +137,7 @@ impl Drop for Reader {
     }
 }
 
-/// The files of a scene.
+/// The files of a scene, which the program opens.
 #[cfg(feature = "scene")]
 pub(crate) struct Files {
     files: htex_files,
@@ -142,7 +146,7 @@ pub(crate) struct Files {
 #[cfg(feature = "scene")]
 impl Files {
     /// # Safety
-    /// NULL, or files of the caller.
+    /// The pointer is NULL, or points to a `htex_files` of the caller.
     pub(crate) unsafe fn from_raw(files: *const htex_files) -> Result<Self, Failure> {
         // SAFETY: as here.
         let files = unsafe { slice(files, 1) }?[0];
@@ -154,7 +158,7 @@ impl Files {
         Ok(Self { files })
     }
 
-    /// Reads the file with a name.
+    /// Reads the whole file with this name.
     pub(crate) fn read_whole(&self, name: &str) -> io::Result<Vec<u8>> {
         let absent = || io::Error::from(io::ErrorKind::NotFound);
         let text = CString::new(name).map_err(|_| absent())?;

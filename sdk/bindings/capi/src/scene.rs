@@ -1,5 +1,5 @@
 //! Scenes: loading, planning, following a finger, rendering. Without the feature `scene`, each call
-//! returns an error that says so.
+//! returns an error that names this feature.
 
 use std::ffi::c_char;
 
@@ -7,7 +7,8 @@ use crate::options::htex_open_options;
 use crate::reader::htex_files;
 use crate::status::htex_status;
 
-/// A planned scene that is playing. Only one thread at a time may use it. Zero is not a scene.
+/// A scene that plays: surfaces, a finger's motion over them, and the samples that result. Only one
+/// thread at a time may use it. An `id` of 0 never stands for a scene.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene {
@@ -15,8 +16,8 @@ pub struct htex_scene {
     pub id: u64,
 }
 
-/// Options for opening a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for
-/// the defaults.
+/// Options for opening a scene. Set `size` to sizeof(htex_scene_options), and all other fields to
+/// zero for the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene_options {
@@ -36,14 +37,16 @@ pub struct htex_finger {
     pub speed_mm_s: f64,
     /// Normal force, N; not negative.
     pub force_n: f64,
-    /// Position, mm. If unknown, both are NAN, and the finger is on every surface without a region.
+    /// Position x, mm. If the position is unknown, set both `x_mm` and `y_mm` to NAN. The finger
+    /// then touches every surface that has no region.
     pub x_mm: f64,
-    /// See `x_mm`.
+    /// Position y, mm; see `x_mm`.
     pub y_mm: f64,
 }
 
-/// [any thread; reads files] Loads a scene file and its assets, and plans it. Its samples have the
-/// assets' unit, because the scene's own device is not used. `open` and `options` may be NULL.
+/// [any thread; reads files] Loads a scene file and its assets, and plans which processing stages
+/// the scene needs. The scene's own device is not used, so its samples have the unit of the assets.
+/// `open` and `options` may be NULL for the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open(
     path: *const c_char,
@@ -55,7 +58,7 @@ pub unsafe extern "C" fn htex_scene_open(
     unsafe { calls::open_path(path, open, options, out) }
 }
 
-/// [any thread; reads files] As htex_scene_open, for a Windows path in UTF-16.
+/// [any thread; reads files] Does the same as htex_scene_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open_wide(
@@ -68,8 +71,8 @@ pub unsafe extern "C" fn htex_scene_open_wide(
     unsafe { calls::open_wide(path, open, options, out) }
 }
 
-/// [any thread] As htex_scene_open, for a scene in memory whose files the program reads. The bytes
-/// and `files` are only used during the call.
+/// [any thread] Does the same as htex_scene_open, for a scene file in memory. The library reads the
+/// other files of the scene through `files`. It uses the bytes and `files` only during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_from_bytes(
     bytes: *const u8,
@@ -89,8 +92,8 @@ pub extern "C" fn htex_scene_free(scene: htex_scene) -> htex_status {
     calls::free(scene)
 }
 
-/// [one thread at a time] Writes the plan as JSON: the stages that run, the stages that are left
-/// out, and the reasons. Written as by htex_asset_manifest_json.
+/// [one thread at a time] Writes the scene's plan as JSON: which processing stages run, which are
+/// left out, and why. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_plan_json(
     scene: htex_scene,
@@ -102,15 +105,15 @@ pub unsafe extern "C" fn htex_scene_plan_json(
     unsafe { calls::plan_json(scene, out, capacity, length) }
 }
 
-/// [one thread at a time] Writes the sample rate, Hz.
+/// [one thread at a time] Writes the sample rate of the scene, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::rate_hz(scene, out) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the
-/// finger in a scene with live motion. In other scenes it has no effect.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the position and motion of
+/// the finger. This has an effect only in scenes with live motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,
@@ -120,9 +123,10 @@ pub unsafe extern "C" fn htex_scene_set_finger(
     unsafe { calls::set_finger(scene, finger) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples and
-/// writes their number to `rendered`. It is smaller at the end of the scene. If a model fails, its
-/// surface is silent, the others continue, and the call returns the error.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames` samples
+/// and writes their number to `rendered`. At the end of the scene, the number is smaller than
+/// `frames`. If a model fails, its surface becomes silent, the other surfaces play on, and the call
+/// returns the error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_render(
     scene: htex_scene,
@@ -134,8 +138,8 @@ pub unsafe extern "C" fn htex_scene_render(
     unsafe { calls::render(scene, out, frames, rendered) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene as early as
-/// possible, with a ramp to silence.
+/// [one thread at a time; real-time: neither allocates nor locks] Makes the scene end as soon as
+/// possible: the next samples fade to silence.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_scene_stop(scene: htex_scene) -> htex_status {
     calls::stop(scene)
@@ -149,7 +153,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! Replacements in a library without scenes.
+    //! Stand-ins for a library that is built without scenes.
     use super::*;
     use crate::status::{Failure, guarded};
 

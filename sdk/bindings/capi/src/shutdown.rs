@@ -5,12 +5,13 @@ use crate::log::forget_log;
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::VOICES;
 
-/// [no other call may run in any thread] Prepares the library for being unloaded. It frees all
-/// assets, voices, libraries, scenes and devices (which go to rest), and all memory allocated for
-/// them. It ends the engines' threads and removes the function of htex_set_log. Existing handles
-/// become invalid; new objects may be made afterwards. Constants of the models that were used
-/// remain: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY if an object is in use;
-/// then no object of its kind is freed.
+/// [no other call may run in any thread] Frees everything, so that the library can be unloaded: all
+/// devices, which go to rest, then all scenes, voices, assets and libraries. It also ends the
+/// threads of the WASM engines and removes the function of htex_set_log. Existing handles become
+/// invalid, but new objects may be made afterwards. Constants of the models that were used stay in
+/// memory: 0.2 MB for all six built-in models, however often they are used. If an object is in use,
+/// the call returns HTEX_STATUS_BUSY, and frees neither the objects of the same kind nor anything
+/// that comes after them in the list above.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_shutdown() -> htex_status {
     guarded(|| {
@@ -28,7 +29,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
             crate::library::clear()?;
         }
         forget_log();
-        // Last, because the clocks stop calls of modules that take too long.
+        // Last, because these threads stop calls of WASM modules that take too long.
         #[cfg(feature = "wasm")]
         htex::model::end_wasm_clocks();
         Ok::<_, Failure>(())

@@ -5,8 +5,8 @@ use std::ffi::{CStr, c_char};
 use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Status of a call. Later versions may return further values. All values except HTEX_STATUS_OK are
-/// errors.
+/// Status of a call. All values except HTEX_STATUS_OK are errors. Later versions may return other
+/// values than these.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum htex_status {
@@ -14,7 +14,7 @@ pub enum htex_status {
     HTEX_STATUS_OK = 0,
     /// A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of range.
     HTEX_STATUS_INVALID_ARGUMENT = 1,
-    /// The handle was freed, or was never one of this kind.
+    /// The handle was freed, or it was never a handle of this kind of object.
     HTEX_STATUS_BAD_HANDLE = 2,
     /// Another thread is using the object.
     HTEX_STATUS_BUSY = 3,
@@ -34,19 +34,19 @@ pub enum htex_status {
     HTEX_STATUS_INVALID_SCENE = 10,
     /// This build of the library lacks the feature.
     HTEX_STATUS_UNSUPPORTED = 11,
-    /// The buffer is too small. It contains the beginning of the text.
+    /// The buffer is too small for the text. It contains the beginning of the text.
     HTEX_STATUS_TRUNCATED = 12,
-    /// An error in the library itself. The object of the call must be freed.
+    /// An error in the library itself. Free the object that was passed to the call.
     HTEX_STATUS_INTERNAL = 13,
     /// The texture library is invalid.
     HTEX_STATUS_INVALID_LIBRARY = 14,
     /// The library has no texture with this name.
     HTEX_STATUS_ABSENT = 15,
-    /// The device or its driver is missing, in use, or failed. The device is at rest.
+    /// The device or its driver is missing, is in use, or failed. The device is then at rest.
     HTEX_STATUS_DEVICE = 16,
 }
 
-/// An error of a call: its status and its text.
+/// The error of a call: a status and a text.
 #[derive(Debug)]
 pub struct Failure {
     status: htex_status,
@@ -56,7 +56,7 @@ pub struct Failure {
 #[derive(Debug)]
 enum Text {
     Plain(&'static str),
-    /// Not boxed: calls in a real-time thread fail without allocating.
+    /// Not boxed, so that calls in a real-time thread can fail without allocating.
     Playing(htex::Error),
     #[cfg(feature = "scene")]
     Scene(htex::scene::SceneError),
@@ -64,7 +64,7 @@ enum Text {
 }
 
 impl Failure {
-    /// An error with a fixed text; does not allocate.
+    /// Makes an error with a fixed text; does not allocate.
     pub const fn plain(status: htex_status, text: &'static str) -> Self {
         let text = Text::Plain(text);
         Self { status, text }
@@ -131,11 +131,11 @@ impl From<htex::Error> for Failure {
     }
 }
 
-/// Size of the last error's text, bytes, including a terminating zero.
+/// Room for the text of the last error, bytes, including a terminating zero.
 const TEXT_BYTES: usize = 1024;
 
-/// The text of a thread's last error, in memory of that thread, so that setting it does not
-/// allocate.
+/// The text of a thread's last error. Each thread has its own memory for it, so that setting it
+/// does not allocate.
 #[repr(C)] // `bytes` comes first: `htex_last_error` returns its address.
 struct LastError {
     bytes: [u8; TEXT_BYTES],
@@ -176,16 +176,16 @@ fn remember(text: &Text) {
     });
 }
 
-/// [any thread] Returns the text of the calling thread's last error, in English, UTF-8, at most
-/// 1023 bytes; empty if there was none. It is valid until the thread's next call that fails. A
-/// successful call does not change it.
+/// [any thread] Returns the text of the calling thread's last error, in English; empty if there was
+/// no error. It is UTF-8, and at most 1023 bytes long. It is valid until the thread's next call
+/// that fails. A successful call does not change it.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_last_error() -> *const c_char {
     LAST.with(|last| last.get().cast::<c_char>().cast_const())
 }
 
-/// [any thread; real-time] Returns what a status means, in English; "unknown status" for other
-/// numbers. The text is static.
+/// [any thread; real-time] Returns the meaning of a status, in English, or "unknown status" for an
+/// unknown number. The text stays valid and must not be freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
     let text: &CStr = match status {
@@ -211,9 +211,9 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
     text.as_ptr()
 }
 
-/// Runs the body of a C function. It stores the text of an error and catches panics.
+/// Runs the body of a C function. Stores the text of an error, and turns panics into errors.
 pub fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
-    // The header says that an object must be freed after this error, so its state does not matter.
+    // The header tells programs to free the object after this error, so its state does not matter.
     let result = catch_unwind(AssertUnwindSafe(body)).unwrap_or(Err(Failure::plain(
         htex_status::HTEX_STATUS_INTERNAL,
         "an error of the library itself; please report it",

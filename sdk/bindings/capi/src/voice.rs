@@ -12,7 +12,8 @@ use crate::options::{htex_voice_options, voice_options};
 use crate::pointers::{place, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A texture that is playing. Only one thread at a time may use it. Zero is not a voice.
+/// A texture that is playing. Only one thread at a time may use it. An `id` of 0 never stands for a
+/// voice.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice {
@@ -20,11 +21,11 @@ pub struct htex_voice {
     pub id: u64,
 }
 
-/// A voice, and everything needed to make it again.
+/// A voice, and everything that is needed to restart it.
 pub(crate) struct Playing {
     voice: Voice,
     asset: Texture,
-    /// The representation, as the id of its model.
+    /// Id of the model whose representation plays.
     model: String,
     options: VoiceOptions,
 }
@@ -55,8 +56,8 @@ impl DerefMut for Playing {
     }
 }
 
-/// What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope)
-/// before the call.
+/// Level and mean frequency of what a voice played since the last htex_voice_envelope. Set `size`
+/// to sizeof(htex_envelope) before the call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_envelope {
@@ -64,15 +65,16 @@ pub struct htex_envelope {
     pub size: u32,
     /// Exact RMS of the samples, in the asset's unit; 0 if there are none.
     pub level_rms: f64,
-    /// Mean frequency, weighted by power, Hz; 0 for silence.
+    /// Mean frequency of the spectrum, weighted by power, Hz; 0 for silence.
     pub centroid_hz: f64,
-    /// Number of samples.
+    /// Number of samples since the last call.
     pub frames: u64,
 }
 
 pub(crate) static VOICES: Table<Playing> = Table::new(Kind::Voice);
 
-/// [any thread; may load a model] Makes a voice from an asset. `options` may be NULL.
+/// [any thread; may load a model] Makes a voice, which plays an asset. `options` may be NULL for
+/// the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_new(
     asset: htex_asset,
@@ -94,9 +96,9 @@ pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
     guarded(|| VOICES.remove(voice.id).map(drop))
 }
 
-/// [one thread at a time; not the real-time thread] Restarts the voice with the same options and
-/// the same handle. It then gives the same samples as a new voice. `motion` may be NULL for the
-/// motion in its options. After an error the voice plays on as before.
+/// [one thread at a time; not the real-time thread] Restarts a voice with the same options and the
+/// same handle. The voice then gives the same samples as a new voice. It starts at `motion`, or at
+/// the motion in its options if `motion` is NULL. After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_reset(
     voice: htex_voice,
@@ -116,8 +118,9 @@ pub unsafe extern "C" fn htex_voice_reset(
     })
 }
 
-/// [one thread at a time] Writes the id of the model that plays: the one in the options, or the one
-/// that was chosen. Written as by htex_asset_manifest_json.
+/// [one thread at a time] Writes the id of the model that plays. It is the model in the voice's
+/// options, or the model that the library chose if the options name none. `out`, `capacity` and
+/// `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_model(
     voice: htex_voice,
@@ -133,15 +136,15 @@ pub unsafe extern "C" fn htex_voice_model(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which must not be
-/// negative. The change takes 10 ms.
+/// negative. The voice reaches the new gain within 10 ms.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_status {
     guarded(|| Ok(VOICES.exclusive(voice.id)?.set_gain(gain)?))
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice is silent
-/// (its samples are 0 until the finger slides again), otherwise 0. A silent voice takes hardly any
-/// time to render.
+/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice is silent,
+/// otherwise 0. The samples of a silent voice are 0 until the finger slides again. Rendering them
+/// takes hardly any time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
     guarded(|| {
@@ -153,7 +156,8 @@ pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) 
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
-/// Spectrum and level change gradually. After an error the voice plays on as before.
+/// Spectrum and level change gradually to the new motion. After an error the voice plays on as
+/// before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_set_motion(
     voice: htex_voice,
@@ -167,8 +171,8 @@ pub unsafe extern "C" fn htex_voice_set_motion(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples, in the
-/// asset's unit. The samples do not depend on the lengths of the blocks.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames`
+/// samples, in the asset's unit. Rendering in shorter or longer blocks gives the same samples.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render(
     voice: htex_voice,
@@ -183,8 +187,8 @@ pub unsafe extern "C" fn htex_voice_render(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Multiplies the next samples by
-/// `gain` and adds them to `out`, to mix several voices.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames`
+/// samples, multiplies them by `gain` and adds them to `out`. This mixes several voices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_add(
     voice: htex_voice,
@@ -200,15 +204,17 @@ pub unsafe extern "C" fn htex_voice_render_add(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Writes what the voice played
-/// since the last call, including effects, gain and limit, for phones, pads and motors that are
-/// driven by level and frequency. `bands` receives the mean square in each of the voice's
-/// `envelope_bands`, in the squared unit. It may be NULL if `bands_len` is 0.
+/// [one thread at a time; real-time: neither allocates nor locks] Writes the level and mean
+/// frequency of what the voice played since the last call, after effects, gain and limit. Use it
+/// for phones, pads and motors that receive a level and a frequency instead of samples. `bands`
+/// receives the mean square of the samples in each of the voice's `envelope_bands`, in the asset's
+/// unit squared. It may be NULL if `bands_len` is 0.
 ///
-/// The level is exact. Frequency and bands are computed from Hann windows of N samples, where N is
-/// the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A window ends every N / 4
-/// samples, and its middle is N / 2 samples before its end. A call returns the mean of the windows
-/// that ended since the last call; if none did, it returns the values of that call.
+/// The level is exact. The mean frequency and the bands are computed from Hann windows of N
+/// samples, where N is the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A new
+/// window ends every N / 4 samples. Its middle is N / 2 samples before its end, so these values are
+/// late by N / 2 samples. A call returns the mean over the windows that ended since the last call.
+/// If none ended, it returns the same values as the last call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope(
     voice: htex_voice,
@@ -233,10 +239,10 @@ pub unsafe extern "C" fn htex_voice_envelope(
     })
 }
 
-/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz: one more than
-/// there are bands, spaced by equal ratios from the lowest to the highest frequency of the asset.
-/// The first band also includes everything down to 0 Hz, and the last everything up to half the
-/// sample rate.
+/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz. `len` must be
+/// the number of bands plus one. The edges go from the lowest to the highest frequency of the
+/// asset, spaced by equal ratios. The first band also includes everything below, down to 0 Hz. The
+/// last band also includes everything above, up to half the sample rate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope_edges(
     voice: htex_voice,
@@ -259,8 +265,9 @@ pub unsafe extern "C" fn htex_voice_envelope_edges(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames`
-/// samples for each of `motions_len` motions, in total `motions_len * frames` samples. Each motion
-/// is set before its block. Stops at the first error; the rest of `out` is then unchanged.
+/// samples for each of `motions_len` motions, in total `motions_len * frames` samples. Sets each
+/// motion just before its block. Stops at the first error, and then leaves the rest of `out`
+/// unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_path(
     voice: htex_voice,
@@ -277,7 +284,7 @@ pub unsafe extern "C" fn htex_voice_render_path(
         // SAFETY: the arrays are the caller's.
         let (motions, out) =
             unsafe { (crate::motion::motions(motions, motions_len)?, slice_mut(out, len)?) };
-        // `chunks_exact_mut` panics at 0. The motions are set all the same.
+        // `chunks_exact_mut` panics at 0. The motions are set nevertheless.
         if frames == 0 {
             let mut motions = motions;
             return motions.try_for_each(|motion| Ok(voice.set_motion(motion)?));
@@ -290,8 +297,9 @@ pub unsafe extern "C" fn htex_voice_render_path(
     })
 }
 
-/// [one thread at a time] Writes how the voice plays a motion, and whether the motion lies within
-/// the recorded conditions, as English text. Written as by htex_asset_manifest_json.
+/// [one thread at a time] Writes an English text that states how the voice plays a motion, and
+/// whether the motion lies within the recorded conditions. `out`, `capacity` and `length` work as
+/// in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage(
     voice: htex_voice,

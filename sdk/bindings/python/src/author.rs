@@ -1,4 +1,4 @@
-//! Computes spectra and textures from recordings, and the agreement of spectra.
+//! Computes spectra and textures from recordings, and measures the agreement of two spectra.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use crate::python::{from_json, parsed};
 use crate::reading::{Pair, Reading, ReadingText, Source, unknown};
 use crate::texture::Texture;
 
-/// Program and version, for an asset's provenance, the same as the command states.
+/// Program and version for the provenance of assets. It is the same text that the command writes.
 pub(crate) const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
 
 /// Returns the texture spectrum of a recording, and information about how it was read.
@@ -76,7 +76,7 @@ fn described(spectrum: &TextureSpectrum) -> Value {
     })
 }
 
-/// What is fitted, and how: the keywords of the package's function.
+/// Which models are fitted, and how: keywords of the package's function `fit`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Fit {
@@ -114,7 +114,8 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     Ok((texture, rest))
 }
 
-/// Raises the error of a model written in Python. Other models that cannot be fitted are left out.
+/// Raises the error of a model that is written in Python. Any other model that cannot be fitted is
+/// left out instead.
 fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResult<()> {
     for (id, reason) in skipped {
         let model = registry.find(id).map_err(raised)?;
@@ -156,7 +157,7 @@ impl Fit {
     }
 }
 
-/// Compares magnitudes with a reference's magnitudes at the same frequencies.
+/// Compares magnitudes with the magnitudes of a reference at the same frequencies.
 #[pyfunction]
 pub(crate) fn agreement<'py>(
     py: Python<'py>,
@@ -177,7 +178,7 @@ pub(crate) fn agreement<'py>(
     from_json(py, &fields)
 }
 
-/// Refuses spectra that cannot be compared.
+/// Returns an error if the spectra cannot be compared.
 fn check(frequency_hz: &[f64], band: Band, reference: &[f64], magnitude: &[f64]) -> PyResult<()> {
     let (frequencies, expected, got) = (frequency_hz.len(), reference.len(), magnitude.len());
     if frequencies == 0 || frequencies != expected || frequencies != got {

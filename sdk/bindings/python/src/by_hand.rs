@@ -19,7 +19,7 @@ use crate::python::parsed;
 use crate::reading::{Pair, unknown};
 use crate::texture::Texture;
 
-/// Arguments for making a texture from parameters: the keywords of the package's function.
+/// Arguments for making a texture from parameters: keywords of the package's function `make`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct ByHandTexture {
@@ -41,7 +41,7 @@ pub(crate) fn make(py: Python<'_>, made: ByHandTexture) -> PyResult<Texture> {
     py.detach(|| made.texture())
 }
 
-/// Makes a texture between two others. `weight` is the share of the second.
+/// Makes a texture between two others. `weight` is the share of the second, 0 to 1.
 #[pyfunction]
 pub(crate) fn mix(
     py: Python<'_>,
@@ -107,7 +107,7 @@ impl ByHandTexture {
     }
 }
 
-/// Reads metadata, and refuses metadata that would make the asset invalid.
+/// Parses metadata, and returns an error if it would make the asset invalid.
 fn checked(metadata: &str) -> PyResult<Metadata> {
     let metadata: Metadata = parsed(metadata)?;
     let checked = metadata.check();

@@ -1,5 +1,5 @@
-//! Exceptions from models written in Python. The host passes on only their texts; the exception
-//! that is finally raised gets the original as its cause.
+//! Stores exceptions from models that are written in Python. The host passes on only an exception's
+//! text. The exception that is finally raised to the user gets the stored one as its cause.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
@@ -8,16 +8,16 @@ use htex_model::{Error, Status};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 
-/// Number of exceptions that are stored. An exception is dropped when it becomes a cause, or after
-/// this many others.
+/// Largest number of stored exceptions. An exception is dropped when it becomes a cause, or when
+/// this many newer ones were stored.
 const MOST: usize = 16;
 /// Largest length of an exception's text, characters.
 const LONGEST: usize = 500;
 
-/// Texts and exceptions, the latest first.
+/// The stored exceptions with their texts, the latest first.
 static RAISED: Mutex<VecDeque<(String, PyErr)>> = Mutex::new(VecDeque::new());
 
-/// Stores an exception and returns its text in one line.
+/// Stores an exception and returns its text as one line.
 fn keep(py: Python<'_>, error: PyErr) -> String {
     let text = error.to_string();
     let one_line = |c: char| if c.is_control() { ' ' } else { c };
@@ -33,25 +33,24 @@ fn keep(py: Python<'_>, error: PyErr) -> String {
     text
 }
 
-/// Stores the exception of a call, and makes the model's error from it.
+/// Stores the exception that a call raised, and makes a model error from it.
 pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
     Error::new(Status::Failed, keep(py, error))
 }
 
-/// Sets the stored exception whose text is part of this one's as its cause. An interrupt is
-/// returned itself.
+/// Finds the stored exception whose text is contained in the text of `error`, and sets it as the
+/// cause of `error`. If the stored exception is an interrupt, returns the interrupt instead.
 pub(crate) fn attach(error: PyErr) -> PyErr {
     Python::attach(|py| {
         let text = error.to_string();
-        // Without the interpreter, which the thread that holds the lock may be waiting for.
+        // Releases the interpreter, because the thread that holds the lock may be waiting for it.
         let cause = py.detach(|| {
             let mut raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
             let at = raised.iter().position(|(kept, _)| text.contains(kept))?;
             raised.remove(at)
         });
         match cause {
-            // `KeyboardInterrupt` and `SystemExit` must end the program as they would have without
-            // us.
+            // `KeyboardInterrupt` and `SystemExit` must end the program as they would without htex.
             Some((_, cause)) if !cause.is_instance_of::<PyException>(py) => cause,
             Some((_, cause)) => {
                 error.set_cause(py, Some(cause));

@@ -10,14 +10,14 @@ use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source};
 use crate::texture::Texture;
 
-/// What a recording is compared with.
+/// The texture or the other recording with which a recording is compared.
 #[derive(FromPyObject)]
 pub(crate) enum Other<'py> {
     Texture(PyRef<'py, Texture>),
     Recording(Source),
 }
 
-/// Measures each representation of a texture, or another recording, against a recording.
+/// Compares a recording with each representation of a texture, or with another recording.
 #[pyfunction]
 pub(crate) fn compare<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Devices play samples, and are selected by name.
+//! Devices play samples. A program selects a device by its name.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -15,12 +15,12 @@ use serde_json::json;
 use crate::errors::{DeviceError as Failed, option};
 use crate::python::{data, from_json};
 
-/// An open device. If it is closed without `finish`, it goes to rest.
+/// An open device, which plays samples. If it is closed without `finish`, it goes to rest at once.
 #[pyclass(module = "htex")]
 pub(crate) struct Device {
     name: String,
-    /// `None` when it is closed. The lock only satisfies the interpreter: each call has the object
-    /// to itself.
+    /// `None` when the device is closed. The lock is only needed to make the class thread-safe for
+    /// PyO3: each call already has the object to itself.
     device: Mutex<Option<Box<dyn Output>>>,
     can: Capabilities,
     rate_hz: f64,
@@ -74,13 +74,13 @@ impl Device {
         self.rate_hz
     }
 
-    /// Unit of the samples; empty for fractions of full scale.
+    /// Unit of the samples. It is empty for fractions of full scale.
     #[getter]
     fn unit(&self) -> &'static str {
         self.can.quantity.unit()
     }
 
-    /// Passes samples to the device, as many as it accepts within the time, and returns their
+    /// Passes samples to the device, as many as it accepts within `timeout_s`, and returns their
     /// number.
     #[pyo3(signature = (samples, timeout_s=1.0))]
     fn write(
@@ -91,7 +91,7 @@ impl Device {
     ) -> PyResult<usize> {
         let timeout = Duration::try_from_secs_f64(timeout_s)
             .map_err(|_| option(format!("timeout_s is {timeout_s}; at least 0")))?;
-        // Copied, because other threads may change the array once the interpreter is released.
+        // Copied, because other threads may change the array while the interpreter is released.
         let samples = samples.as_slice()?.to_vec();
         let device = self.open()?;
         py.detach(|| device.write(&samples, timeout)).map_err(raised)
@@ -110,16 +110,17 @@ impl Device {
         data(py, "DeviceStatus", &fields)
     }
 
-    /// Plays everything that was written, and saves the result.
+    /// Plays all samples that were written, then brings the device to rest. The device `file` saves
+    /// its file.
     fn finish(&mut self, py: Python<'_>) -> PyResult<()> {
         let device = self.open()?;
         py.detach(|| device.finish()).map_err(raised)
     }
 
-    /// Goes to rest.
+    /// Closes the device. It goes to rest at once, without playing the remaining samples.
     fn close(&mut self, py: Python<'_>) {
         let device = self.slot().take();
-        // Going to rest may take a while, and other threads must not wait for it.
+        // The interpreter is released, because going to rest may take a while.
         py.detach(|| drop(device));
     }
 
@@ -135,7 +136,8 @@ impl Device {
         _value: Option<Bound<'_, PyAny>>,
         _traceback: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        // After an exception nothing is played to its end: the device goes to rest at once.
+        // After an exception, the remaining samples are not played: the device goes to rest at
+        // once.
         let finished = match (kind, self.slot().is_some()) {
             (None, true) => self.finish(py),
             _ => Ok(()),
@@ -160,8 +162,9 @@ impl Device {
     }
 }
 
-/// The outputs that `htex device list` lists: of each its `descriptor`, which includes its settings,
-/// what is connected (`endpoints`), and why that is not known (`problem`).
+/// Lists the output devices, as `htex device list` does. Each has a `descriptor`, which includes
+/// its settings, and `endpoints`, the devices that are connected now. If the connected devices
+/// cannot be listed, `problem` states why.
 #[pyfunction(name = "devices")]
 #[pyo3(signature = (*, installed=false))]
 pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAny>> {
@@ -179,7 +182,7 @@ pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAn
     from_json(py, &all)
 }
 
-/// The devices that the command has, and the installed ones if requested.
+/// Returns the built-in devices and, if requested, the installed ones.
 pub(crate) fn devices(installed: bool) -> Result<Devices, DeviceError> {
     let search = Search { env: installed, user_dir: installed, ..Search::default() };
     Devices::search(htex_device_builtin::devices(), &search)

@@ -1,4 +1,4 @@
-//! The package's exceptions, and which error becomes which exception.
+//! Converts errors to the package's exceptions.
 
 use std::io;
 use std::path::Path;
@@ -26,10 +26,10 @@ import_exception!(htex._errors, OptionError);
 import_exception!(htex._errors, RecordingError);
 import_exception!(htex._errors, SceneError);
 
-/// An error that becomes an exception: one of this package's, or `OSError` if the system reports
-/// it.
+/// An error that becomes an exception of this package, or an `OSError` if the operating system
+/// reported it.
 pub(crate) trait IntoPyErr {
-    /// Makes the exception.
+    /// Converts the error to an exception.
     fn into_py_err(self) -> PyErr;
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
         Some(number) => {
             let text = error.to_string();
-            // Python writes the number itself.
+            // Python adds the error number to the text itself.
             let text = text.split(" (os error").next().unwrap_or_default();
             let file = path.as_os_str().to_owned();
             PyOSError::new_err((number, text.to_owned(), file))

@@ -22,7 +22,7 @@ use crate::python::{from_json, parsed};
 use crate::reading::unknown;
 use crate::texture::Texture;
 
-/// What the imported file does not state, and how it is fitted.
+/// Arguments of an import: what the imported file does not state, and how models are fitted to it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Importing {
@@ -40,7 +40,7 @@ pub(crate) struct Importing {
     installed: bool,
 }
 
-/// How a texture is exported.
+/// Arguments of an export.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Exporting {
@@ -57,13 +57,13 @@ pub(crate) struct Exporting {
     seed: u64,
 }
 
-/// The formats and the actuator profiles, as in `htex formats --json`.
+/// Returns the formats and the actuator profiles, as `htex formats --json` prints them.
 #[pyfunction]
 pub(crate) fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     from_json(py, &json!({ "formats": FORMATS, "profiles": &*PROFILES }))
 }
 
-/// Imports a file, and returns the texture, warnings and notes.
+/// Imports a file. Returns the texture, the warnings and the notes.
 #[pyfunction]
 pub(crate) fn import_file(
     py: Python<'_>,
@@ -73,7 +73,7 @@ pub(crate) fn import_file(
     py.detach(|| request.import(&file))
 }
 
-/// Exports a texture, and returns the file's bytes and a description of what is lost.
+/// Exports a texture. Returns the bytes of the file, and a description of what is lost.
 #[pyfunction]
 pub(crate) fn export<'py>(
     py: Python<'py>,
@@ -90,7 +90,7 @@ impl Importing {
     fn import(self, file: &Path) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        // Only checked here, so that an unknown format is reported before wrong settings.
+        // Only checks the name, so that an unknown format is reported before an invalid setting.
         Format::of_file(&name).map_err(raised)?;
         let metadata: Metadata = parsed(&self.metadata)?;
         metadata.check().map_err(|error| option(error.to_string()))?;
@@ -188,7 +188,7 @@ impl IntoPyErr for ExchangeError {
     }
 }
 
-/// Returns the keyword for a setting.
+/// Returns the Python keyword for a setting.
 fn keyword(setting: &str) -> String {
     let name = match setting {
         "speed" => "speed_mm_s",

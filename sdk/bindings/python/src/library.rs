@@ -15,7 +15,8 @@ use crate::errors::{IntoPyErr, LibraryError as Raised, of_file, raised};
 use crate::python::data;
 use crate::texture::{Source, Texture};
 
-/// A library: one file with thousands of textures. Each texture is read when it is requested.
+/// A library: a single file with thousands of textures. A texture is read only when it is
+/// requested.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Library {
     library: htex::library::Library<Origin>,
@@ -105,7 +106,7 @@ impl Library {
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
 
-    /// Returns the entries of the textures that match a query.
+    /// Returns the entries of the textures that match all the given criteria.
     #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None))]
     fn find<'py>(
         &self,
@@ -121,7 +122,7 @@ impl Library {
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
 
-    /// Returns the entry of a texture.
+    /// Returns the entry of the texture with this name.
     fn entry<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let entry = py
             .detach(|| self.library.entry(name))
@@ -166,7 +167,7 @@ impl Library {
 impl Library {
     fn matching(&self, query: &Query) -> PyResult<Vec<Entry>> {
         let entries = self.library.entries();
-        // An entry that cannot be read is kept, so that `collect` returns its error.
+        // Keeps an entry that cannot be read, so that `collect` returns its error.
         let matching = entries.filter(|entry| !matches!(entry, Ok(e) if !query.matches(e)));
         matching.collect::<Result<_, _>>().map_err(raised)
     }
@@ -199,9 +200,9 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     data(py, "LibraryEntry", &fields)
 }
 
-/// Packs textures into a library, by name: paths, bytes, objects with the method `read`, or
-/// `Texture`s. Each must state a licence, because libraries are passed on. With `unlicensed=True`,
-/// textures without a licence are also packed.
+/// Packs textures into a library file. `textures` maps each name to a path, bytes, an object with
+/// the method `read`, or a `Texture`. Each texture must state a licence, because libraries are
+/// passed on to others. With `unlicensed=True`, textures without a licence are also packed.
 #[pyfunction]
 #[pyo3(signature = (path, textures, *, name="", unlicensed=false))]
 pub(crate) fn pack(

@@ -1,4 +1,4 @@
-//! Builds libraries. The jobs of a build can run anywhere.
+//! Builds libraries. The jobs of a build can run in any process on any machine.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use crate::author::TOOL;
 use crate::errors::{BuildError as Raised, of_file, option};
 use crate::python::from_json;
 
-/// A planned build of a library.
+/// A planned build of a library from a recipe.
 #[pyclass(frozen, module = "htex._htex")]
 pub(crate) struct Build(Mutex<Option<htex_build::Build>>, Destination);
 
@@ -45,7 +45,8 @@ impl Build {
         Ok(Self(Mutex::new(Some(build)), to))
     }
 
-    /// The pending jobs: key, job as JSON, and size of its recordings in bytes.
+    /// Returns the pending jobs. Each has a key, the job as JSON, and the size of its recordings in
+    /// bytes.
     fn pending(&self) -> PyResult<Vec<(String, String, u64)>> {
         let build = self.lock();
         let jobs = open(&build)?.pending().map(|(key, job)| {
@@ -69,13 +70,13 @@ impl Build {
         })
     }
 
-    /// Runs the pending jobs here.
+    /// Runs the pending jobs in this process.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
             Some(build) => {
                 let ready = match build.pending().len() {
-                    // The store is tested only before fits, which would be lost time if it refused
-                    // files.
+                    // If there is something to fit, first tests that the store accepts files.
+                    // Otherwise the time for fitting could be lost.
                     0 => Ok(()),
                     _ => self.1.try_out(),
                 };
@@ -86,7 +87,7 @@ impl Build {
         })
     }
 
-    /// Writes the results, and returns the report.
+    /// Writes the library and the report, and returns the report.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let build = self.lock().take().ok_or_else(finished)?;
         let built = py
@@ -116,14 +117,14 @@ fn finished() -> PyErr {
     option("the build is finished; make another one")
 }
 
-/// The folder on this machine in which results are made.
+/// Returns the folder on this machine in which the results are made.
 #[pyfunction]
 pub(crate) fn work_folder(output: OsString, work: Option<PathBuf>) -> PyResult<OsString> {
     let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
     Ok(to.folder().into())
 }
 
-/// The files of a recipe whose hashes are unknown: paths and URIs.
+/// Returns the recordings of a recipe whose hashes are not yet known, as paths and URIs.
 #[pyfunction]
 pub(crate) fn unhashed(
     py: Python<'_>,
@@ -141,7 +142,7 @@ pub(crate) fn hash_file(py: Python<'_>, recipe: PathBuf, file: PathBuf) -> PyRes
     serde_json::to_string(&hashed).map_err(|error| option(error.to_string()))
 }
 
-/// Stores hashes of files for the following build.
+/// Stores the hashes of files, so that the next build need not compute them.
 #[pyfunction]
 pub(crate) fn remember(
     py: Python<'_>,
@@ -158,7 +159,7 @@ pub(crate) fn remember(
     py.detach(|| htex_build::remember(&output, hashed)).map_err(raised)
 }
 
-/// Runs a job that is given as JSON, with its key, and returns the result.
+/// Runs a job, which is given as its key and as JSON, and returns the result.
 #[pyfunction]
 pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bound<'py, PyBytes>> {
     let job: Job = serde_json::from_str(job)
@@ -176,17 +177,19 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
     Ok(PyBytes::new(py, &made.map_err(raised)?))
 }
 
-/// Writes an error to the report in the folder, as `htex build` does, and makes its exception.
+/// Converts an error to an exception. Also writes it to the report in the folder, as `htex build`
+/// does.
 fn failed(to: &Destination, error: BuildError) -> PyErr {
     if matches!(error, BuildError::Removes { .. }) {
         return raised(error);
     }
-    // If even the report cannot be written, the error being raised is already about that folder.
+    // If the report cannot be written either, the error that is raised already concerns that
+    // folder.
     let _ = htex_build::report_failure(to.folder(), TOOL, &lines(&error));
     raised(error)
 }
 
-/// The same for a build that has opened its folder.
+/// Does the same as [`failed`], for a build that has opened its folder.
 fn failed_while_open(build: &htex_build::Build, error: BuildError) -> PyErr {
     let _ = build.report_failure(&lines(&error));
     raised(error)

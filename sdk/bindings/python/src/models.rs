@@ -1,4 +1,4 @@
-//! The models: where they are searched for, and which are found.
+//! Searches for models, and describes them.
 
 use std::path::PathBuf;
 
@@ -9,8 +9,8 @@ use crate::errors::raised;
 use crate::python::from_json;
 use crate::python_model;
 
-/// Searches for models: in plugin files and folders, the installed ones if requested, the built-in
-/// ones, and those written in Python.
+/// Searches for models. Finds the models in plugin files and folders, the built-in models, the
+/// models written in Python and, if requested, the installed models.
 pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registry> {
     let (dirs, files) = plugins.iter().cloned().partition(|path| path.is_dir());
     let places = Search::builtin().with_env(installed).with_user_dir(installed);

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::errors::{MotionError, option};
 use crate::python::zeros;
 
-/// One number for all blocks, or one for each block.
+/// A speed, force or position along a path: one number for all blocks, or one for each block.
 pub(crate) enum Series {
     /// One number.
     Constant(f64),
@@ -46,7 +46,7 @@ impl Series {
     }
 }
 
-/// Makes a motion, with the position and place of the finger if known.
+/// Adds the position and the place of the finger to a motion, if they are known.
 ///
 /// # Errors
 /// When a place has only one coordinate.
@@ -66,7 +66,7 @@ pub(crate) fn located(
     }
 }
 
-/// The motions of a path, all of them valid.
+/// The motions of a path, one for each block. All of them are valid.
 pub(crate) struct Path {
     pub(crate) motions: Vec<Motion>,
     pub(crate) block: usize,
@@ -100,10 +100,10 @@ impl Path {
     }
 }
 
-/// Returns the number of samples in a path with these numbers for its blocks.
+/// Returns the number of samples in a path that is given by these series.
 ///
 /// # Errors
-/// When a block is empty, or the series differ in length.
+/// When a block has no samples, or the series differ in length.
 pub(crate) fn count(given: &[Option<&Series>], block: usize) -> PyResult<usize> {
     if block == 0 {
         return Err(option("block is 0; a motion lasts at least one sample"));

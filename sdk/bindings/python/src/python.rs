@@ -1,4 +1,4 @@
-//! Converts values for Python: JSON to dicts, and the package's data classes.
+//! Converts values for Python: JSON to dicts, and results to the package's data classes.
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::PyMemoryError;
@@ -10,7 +10,8 @@ use serde_json::Value;
 
 use crate::errors::option;
 
-/// Converts a value, via its JSON, to dicts, lists, texts and numbers. NaN becomes `None`.
+/// Converts a value to its JSON, and the JSON to Python dicts, lists, strings and numbers. NaN
+/// becomes `None`.
 pub(crate) fn from_json<'py>(
     py: Python<'py>,
     value: &impl Serialize,
@@ -19,7 +20,7 @@ pub(crate) fn from_json<'py>(
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// Reads a value that the package passes as JSON, such as a function's settings.
+/// Parses a value that the package passes as JSON, such as the settings of a function.
 pub(crate) fn parsed<T: DeserializeOwned>(json: &str) -> PyResult<T> {
     let value: Value = serde_json::from_str(json).map_err(|error| option(error.to_string()))?;
     serde_path_to_error::deserialize(value).map_err(|error| {
@@ -64,7 +65,7 @@ pub(crate) fn spectrum(
 /// `MemoryError` when there is not enough memory.
 pub(crate) fn zeros(n: usize) -> PyResult<Vec<f32>> {
     let mut samples = Vec::new();
-    // `vec!` would end the interpreter if there is not enough memory.
+    // `vec!` would abort the whole interpreter if there is not enough memory.
     let reserved = samples.try_reserve_exact(n);
     reserved.map_err(|_| {
         PyMemoryError::new_err(format!("no memory for {n} samples; render fewer at a time"))

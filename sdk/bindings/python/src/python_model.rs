@@ -1,8 +1,9 @@
-//! Models written in Python. They run under the interpreter's lock, and only in this process.
+//! Models that are written in Python. They run only in this process, and under the global
+//! interpreter lock.
 //!
-//! They are objects ([`RuntimeModel`]). The host checks their arguments and results as it does for
-//! other models. Exceptions pass through the host as texts; the exception that is finally raised
-//! gets the original as its cause.
+//! Each model is an object that implements [`RuntimeModel`]. The host checks its arguments and
+//! results as for any other model. Exceptions pass through the host only as texts. The exception
+//! that is finally raised gets the original one as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,19 +19,20 @@ use crate::causes::failed;
 use crate::errors::{option, raised};
 use crate::python_voice::PlayedVoice;
 
-/// Where these models come from, in messages and assets.
+/// Names the origin of these models in messages and assets.
 const ORIGIN: &str = "Python, this process only";
 
 /// The registered models, in the order of registration.
 static REGISTERED: Mutex<Vec<(Descriptor, Arc<PythonModel>)>> = Mutex::new(Vec::new());
 
-/// Waits for a call in another thread, so it is called without holding the interpreter.
+/// Locks the list. This may wait for another thread, so call it only while the interpreter is
+/// released.
 fn registered() -> MutexGuard<'static, Vec<(Descriptor, Arc<PythonModel>)>> {
     REGISTERED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Registers a model, or replaces the model with its id. `adapter` converts parameters and checks
-/// results.
+/// Registers a model, and replaces a registered model with the same id. `adapter` converts
+/// parameters and checks results.
 #[pyfunction]
 pub(crate) fn register_model(
     py: Python<'_>,
@@ -52,12 +54,14 @@ pub(crate) fn register_model(
         all.push((descriptor, model));
         old
     });
-    // Here, with the interpreter and without the lock, because it may run code of the author.
+    // Dropped here, with the interpreter and without the lock, because dropping it may run the
+    // author's code.
     drop(old);
     Ok(())
 }
 
-/// Removes a model from later searches. Returns whether a model with this id was registered.
+/// Removes a registered model, so that later searches do not find it. Returns whether a model with
+/// this id was registered.
 #[pyfunction]
 pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
     let old = py.detach(|| {
@@ -78,10 +82,12 @@ pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
     Ok(())
 }
 
-/// A model: an object of the package that calls the author's class.
+/// A model that is written in Python. It holds an object of the package that calls the author's
+/// class.
 pub(crate) struct PythonModel {
     adapter: Py<PyAny>,
-    /// Whether the class makes its own voices. If not, noise is shaped by its magnitudes.
+    /// Whether the class makes its own voices. If not, voices play noise with the magnitudes of the
+    /// class.
     plays: bool,
 }
 
@@ -89,7 +95,7 @@ fn array<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
     PyArray1::from_slice(py, numbers)
 }
 
-/// Returns the numbers of an array or a sequence, which must have `wanted` entries.
+/// Converts an array or a sequence to numbers. It must have `wanted` entries.
 fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
     let numbers: Vec<f64> = value.extract()?;
     if numbers.len() == wanted {
@@ -100,16 +106,16 @@ fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
 }
 
 impl PythonModel {
-    /// Returns the magnitudes for parameters, at frequencies in the band. They have unit RMS on the
-    /// grid.
+    /// Returns the magnitudes for parameters, at frequencies in the band. They are scaled so that
+    /// the RMS over the band's grid is 1.
     pub(crate) fn curve(
         &self,
         parameters: &[f64],
         band: Band,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        // A single call to Python gets both: first the grid, which gives the level, then the
-        // frequencies.
+        // A single call to Python gets the magnitudes at the grid, which determine the level, and
+        // then at `frequency_hz`.
         let mut all = band.grid_hz();
         let bins = all.len();
         all.extend(frequency_hz);
@@ -175,7 +181,7 @@ impl RuntimeModel for PythonModel {
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error> {
         let model =
-            // A `Py` can be cloned only while the interpreter is held.
+            // A `Py` can be cloned only while this thread holds the interpreter.
             Python::attach(|py| Self { adapter: self.adapter.clone_ref(py), plays: self.plays });
         if self.plays {
             let voice = Python::attach(|py| {
@@ -192,8 +198,8 @@ impl RuntimeModel for PythonModel {
     }
 }
 
-/// Noise with a model's magnitudes. Rendering does not call Python, but changing the parameters
-/// does.
+/// A voice that plays noise with a model's magnitudes. Changing the parameters calls Python;
+/// rendering does not.
 struct ShapedVoice {
     model: PythonModel,
     band: Band,

@@ -1,4 +1,4 @@
-//! Voices written in Python: objects with a method `render`.
+//! Voices that are written in Python: objects with a method `render`.
 
 use htex::model::RuntimeVoice;
 use htex_model::{Error, Values};
@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use crate::causes::failed;
 use crate::errors::option;
 
-/// An object of the package that calls the voice of the author's class.
+/// A voice that is written in Python. It holds an object of the package that calls the author's
+/// voice.
 pub(crate) struct PlayedVoice {
     adapter: Py<PyAny>,
 }

@@ -35,10 +35,11 @@ pub(crate) struct Reading {
     besides: Besides,
 }
 
-/// How recordings are read, as the package passes it: settings and further keywords, both JSON.
+/// How recordings are read, in the form that the package passes: the settings, and the other
+/// keywords, both as JSON.
 pub(crate) type ReadingText = (PyBackedStr, PyBackedStr);
 
-/// Keywords for reading that are not settings.
+/// Keywords for reading recordings that are not settings of the command.
 #[derive(Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
 struct Besides {
@@ -55,7 +56,7 @@ impl Reading {
         Ok(Self { settings: parsed(settings)?, besides: parsed(besides)? })
     }
 
-    /// Whether recordings with findings that are errors or warnings are refused.
+    /// Whether recordings are refused if they have a finding that is an error or a warning.
     pub(crate) fn strict(&self) -> bool {
         self.besides.strict.unwrap_or_default()
     }
@@ -64,7 +65,8 @@ impl Reading {
         &self.settings
     }
 
-    /// Reads recordings. `conditions` has one entry for each of them, one for all, or none.
+    /// Reads recordings. `conditions` has one entry for each recording, or one for all of them, or
+    /// none.
     pub(crate) fn takes(&self, sources: &[Source], conditions: &[Pair]) -> PyResult<Vec<Take>> {
         let options =
             self.settings().read_options(sources.len()).map_err(|error| self.raised(error))?;
@@ -88,7 +90,7 @@ impl Reading {
         sources.iter().zip(&options).enumerate().map(take).collect()
     }
 
-    /// Reads one recording. Returns it with the segments that were read and their texture spectrum.
+    /// Reads one recording. Returns it, the segments that were read, and their texture spectrum.
     pub(crate) fn spectrum(
         &self,
         source: Source,
@@ -101,8 +103,8 @@ impl Reading {
         Ok((take.recording, read, spectrum))
     }
 
-    /// Reads a recording. A recording from `htex record` or a study is read as the JSON file next
-    /// to it specifies, unless a setting says what the columns are.
+    /// Reads a recording. If it comes from `htex record` or a study, the JSON file next to it
+    /// specifies how it is read, unless a setting names the columns.
     fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
         let path = match source {
             Source::Bytes(name, bytes) => {
@@ -131,14 +133,14 @@ impl Reading {
     /// Makes the exception for a setting.
     pub(crate) fn raised(&self, error: AuthorError) -> PyErr {
         match (error, &self.settings().response) {
-            // The setup's response is the only file that settings read.
+            // The response of the recording setup is the only file that a setting names.
             (AuthorError::Read(error), Some(file)) => unreadable(file, error),
             (other, _) => other.into_py_err(),
         }
     }
 }
 
-/// Makes the exception for a text that is not one of the known names.
+/// Makes the exception for a name that is not one of the known names.
 pub(crate) fn unknown(what: &str, got: &str, known: &str) -> PyErr {
     option(format!("{what} is {got:?}; known are {known}"))
 }

@@ -10,7 +10,8 @@ use serde_json::json;
 use crate::errors::{IntoPyErr, RecordingError, option, raised};
 use crate::python::{from_json, parsed};
 
-/// Measures a response from recordings of an input and an output, each given as a list of series.
+/// Measures a response from recordings of an input and an output. Each pair in `records` is one
+/// recording.
 #[pyfunction]
 pub(crate) fn response<'py>(
     py: Python<'py>,
@@ -29,7 +30,7 @@ pub(crate) fn response<'py>(
     from_json(py, &json!({"measured": measured.map_err(raised)?, "settings": settings.resolved()}))
 }
 
-/// Returns a response as a CSV file.
+/// Returns a response as the bytes of a CSV file.
 #[pyfunction]
 pub(crate) fn response_csv(
     py: Python<'_>,

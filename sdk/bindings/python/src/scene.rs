@@ -1,4 +1,4 @@
-//! Scenes: surfaces, a motion and a device.
+//! Scenes: surfaces, a motion of the finger over them, and a device.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,7 +16,8 @@ use crate::models::registry;
 use crate::path::{Series, count};
 use crate::python::{from_json, zeros};
 
-/// A scene with its assets and its device, which is not opened.
+/// A scene: surfaces, a motion of the finger, and the device for which samples are made. The device
+/// itself is not opened.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Scene {
     file: PathBuf,
@@ -68,20 +69,20 @@ impl Scene {
         })
     }
 
-    /// Unit of the samples: the device's unit.
+    /// Unit of the samples, which is the device's unit.
     #[getter]
     fn unit(&self) -> &'static str {
         self.able.quantity.unit()
     }
 
-    /// Findings that are not errors.
+    /// Remarks about the scene that are not errors.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.loaded.notes.iter().map(ToString::to_string).collect()
     }
 
-    /// Returns the plan: stages with reasons and costs, effects that are left out, and the chosen
-    /// models.
+    /// Returns the plan of the scene: its processing stages with reasons and costs, the effects
+    /// that are left out, and the chosen models.
     fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let plan = py.detach(|| self.planned(&self.loaded))?;
         from_json(py, &plan)
@@ -180,7 +181,8 @@ impl Scene {
             devices: Some(&self.devices),
         };
         let device = DeviceOverride { live: true, ..self.device.clone() };
-        // Loaded again, because some settings of devices have another default for a live motion.
+        // Loads the scene again, because some device settings have another default for a live
+        // motion.
         let mut loaded =
             htex_scene::Scene::open_with(&self.file, &around, &device).map_err(raised)?;
         loaded.file.motion = Motion::Live;
@@ -190,7 +192,8 @@ impl Scene {
     }
 }
 
-/// Returns the costs that the command measured on this machine, or the built-in ones.
+/// Returns the computing costs of models that the command measured on this machine, or the built-in
+/// costs if there are none.
 fn costs() -> Costs {
     let file = folders::cache().map(|folder| folder.join("costs.json"));
     let kept = file.and_then(|file| Costs::load(&file));

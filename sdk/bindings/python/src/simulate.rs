@@ -14,7 +14,7 @@ type Column<'py> = (&'static str, Bound<'py, PyArray1<f64>>);
 /// Frequencies (hertz), magnitudes and phases (radians) of a response.
 type Response = [Vec<f64>; 3];
 
-/// The lowest and highest value of a motion.
+/// A speed or force of the simulated finger: one value, or the lowest and highest value.
 #[derive(FromPyObject)]
 pub(crate) enum Range {
     Between(f64, f64),
@@ -22,8 +22,8 @@ pub(crate) enum Range {
     One(f64),
 }
 
-/// Simulates a recording. Returns its columns, the same as a CSV file, and the response of the
-/// simulated setup.
+/// Simulates a recording. Returns its columns, the same columns as a CSV file, and the response of
+/// the simulated recording setup.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate<'py>(
@@ -59,8 +59,8 @@ pub(crate) fn simulate<'py>(
     Ok((columns.into(), PyBytes::new(py, &csv), response))
 }
 
-/// Combines a law's exponents (as JSON), the drift in decibels per minute, and the fraction of the
-/// time that the finger is off the surface.
+/// Combines the exponents of a law (as JSON), the drift of the level in decibels per minute, and
+/// the fraction of time during which the finger is off the surface.
 fn departing((law, drift_db_per_min, lifted): (&str, f64, f64)) -> PyResult<Departures> {
     let law: GivenLaw =
         serde_json::from_str(law).map_err(|error| option(format!("law: {error}")))?;

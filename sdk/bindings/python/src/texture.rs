@@ -1,4 +1,4 @@
-//! Textures: opened assets.
+//! Textures: open assets.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use crate::path::located;
 use crate::python::{data, from_json, spectrum};
 use crate::voice::Voice;
 
-/// A texture: an opened asset, and the models that play it.
+/// A texture: an open asset (a .htex file), and the models that play it.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Texture {
     asset: htex::Texture,
@@ -62,8 +62,8 @@ impl Source {
         }
         let read =
             if source.hasattr("read")? { source.call_method0("read")? } else { source.clone() };
-        // `bytes` must only accept objects with a buffer: it would turn a number or a text into
-        // something else.
+        // Only objects with a buffer are passed to `bytes`, because it would turn a number or a
+        // text into something else.
         let is_buffer =
             read.cast::<PyBytes>().is_ok() || is_named(&read, &["bytearray", "memoryview"])?;
         if !is_buffer {
@@ -99,8 +99,8 @@ impl Texture {
         })
     }
 
-    /// Makes a texture from what the file of a new asset contains. Levels and errors have fewer
-    /// digits there than in memory.
+    /// Makes a texture from a new asset as its file stores it. In a file, levels and errors have
+    /// fewer digits than in memory.
     pub(crate) fn from_asset(
         made: &Asset,
         plugins: Vec<PathBuf>,
@@ -109,13 +109,13 @@ impl Texture {
         Self::new(stored(made)?, plugins, true, installed)
     }
 
-    /// Makes a texture from an asset's file.
+    /// Makes a texture from the bytes of an asset file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
         Self::new(Asset::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
     }
 
-    /// Makes a texture from an asset that was made from this one and `others`. It does not run
-    /// models that one of them does not run.
+    /// Makes a texture from an asset that was made from this texture and `others`. The new texture
+    /// runs embedded models only if all of these textures do.
     pub(crate) fn made_of(&self, made: &Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);
         Self::new(stored(made)?, self.plugins.clone(), embedded, self.installed)
@@ -190,7 +190,7 @@ impl Texture {
         self.asset.band().edges()
     }
 
-    /// The manifest.
+    /// Everything that the asset's manifest states, as a dict.
     #[getter]
     fn manifest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         from_json(py, self.asset.manifest())
@@ -217,7 +217,8 @@ impl Texture {
         self.asset.manifest().contact.name()
     }
 
-    /// How frequencies and level follow a motion outside the recorded ones: exponents by name.
+    /// How frequencies and level change with speed and force outside the recorded conditions: the
+    /// exponents of the law, by name.
     #[getter]
     fn law<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let law = PyDict::new(py);
@@ -232,14 +233,14 @@ impl Texture {
         Ok(law)
     }
 
-    /// Ids of the models of the representations.
+    /// The model id of each representation.
     #[getter]
     fn models(&self) -> Vec<&str> {
         let all = &self.asset.manifest().representations;
         all.iter().map(|r| r.model.as_str()).collect()
     }
 
-    /// Returns the magnitudes of a representation at a condition.
+    /// Returns the spectrum of a representation at a condition.
     #[pyo3(signature = (frequency_hz=None, model=None, at=None))]
     fn spectrum<'py>(
         &self,
@@ -256,8 +257,8 @@ impl Texture {
         spectrum(py, quantity, band, frequency_hz, magnitude.map_err(raised)?)
     }
 
-    /// Returns the magnitudes of a representation at a recorded condition, as a recording of its
-    /// voice would show them.
+    /// Returns the spectrum that a recording of a representation's voice would show at a recorded
+    /// condition.
     #[pyo3(signature = (model=None, condition=None))]
     fn read_spectrum<'py>(
         &self,
@@ -282,8 +283,8 @@ impl Texture {
         spectrum(py, quantity, band, frequency_hz.clone(), read.map_err(raised)?)
     }
 
-    /// Returns the level of a representation at a condition: the RMS in the band, in the unit of
-    /// the samples.
+    /// Returns the level of a representation at a condition: the RMS within the band, in the unit
+    /// of the samples.
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
@@ -312,18 +313,18 @@ impl Texture {
         Ok(named)
     }
 
-    /// Writes the asset to a file. The file appears complete or not at all.
+    /// Writes the asset to a file. If this fails, no incomplete file remains.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| write(&path, &self.bytes()?))
     }
 
-    /// Returns the asset as the bytes of a file.
+    /// Returns the bytes of the asset's file.
     pub(crate) fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.bytes())?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Makes a voice.
+    /// Makes a voice, which plays the texture.
     #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
                         synthesis="streamed", *, x_mm=None, y_mm=None, frequency_scaling=true, level_scaling=true,
                         contact=true, ceiling=4.0, gain=1.0, limit=None, envelope_bands=0))]
@@ -403,7 +404,7 @@ impl Texture {
     }
 }
 
-/// Returns what the file of a new asset contains.
+/// Returns a new asset as its file stores it.
 fn stored(made: &Asset) -> PyResult<Asset> {
     Asset::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
 }
@@ -413,7 +414,7 @@ pub(crate) fn short(id: &str) -> &str {
     id.rsplit('.').next().unwrap_or(id)
 }
 
-/// Writes a file. It appears complete or not at all.
+/// Writes a file. If this fails, no incomplete file remains.
 #[pyfunction(name = "write_file")]
 pub(crate) fn write_content(py: Python<'_>, path: PathBuf, content: &[u8]) -> PyResult<()> {
     py.detach(|| write(&path, content))
@@ -424,7 +425,7 @@ fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
     write_file(path, bytes).map_err(|error| of_file(path, &error))
 }
 
-/// Refuses sample rates that the command refuses.
+/// Returns an error for a sample rate that the command also refuses.
 fn check_rate(rate_hz: f64) -> PyResult<()> {
     if (100.0..=1e6).contains(&rate_hz) {
         Ok(())

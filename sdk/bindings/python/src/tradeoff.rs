@@ -1,4 +1,4 @@
-//! Measures accuracy against bytes and time.
+//! Measures the accuracy of models against their size in bytes and their computing time.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::models::registry;
 use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source, unknown};
 
-/// Options for a sweep: the keywords of the package's function.
+/// Options for a sweep: keywords of the package's function `tradeoff`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Sweep {
@@ -32,8 +32,8 @@ pub(crate) fn tradeoff(
     request: Sweep,
 ) -> PyResult<Bound<'_, PyAny>> {
     let reading = Reading::new(&reading)?;
-    // A journal is continued only by the same build. The running program is the interpreter, which
-    // says nothing about that.
+    // Only the same build of htex may continue a journal. The running program is Python, so the
+    // file of this extension module identifies the build.
     let program: PathBuf = py.import("htex._htex")?.getattr("__file__")?.extract()?;
     let tradeoff = py.detach(|| measured(&sources, &reading, &request, program))?;
     from_json(py, &tradeoff)
@@ -66,7 +66,7 @@ fn measured(
         }
         subjects.push(subject);
     }
-    // Made in any case, because it has to outlive the journal.
+    // Always made, because it must outlive the journal.
     let folder = tempfile::tempdir().map_err(|error| of_file(&std::env::temp_dir(), &error))?;
     let kept = request.journal.clone();
     let file = kept.unwrap_or_else(|| folder.path().join("sweep.part"));

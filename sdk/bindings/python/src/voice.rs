@@ -35,7 +35,8 @@ impl Voice {
         Self { voice: Mutex::new(voice), model, rate_hz, seed, unit }
     }
 
-    /// Waits for a call in another thread, so it is called without holding the interpreter.
+    /// Locks the voice. This may wait for a call in another thread, so call it only while the
+    /// interpreter is released.
     fn lock(&self) -> MutexGuard<'_, htex::Voice> {
         self.voice.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -83,7 +84,7 @@ impl Voice {
             let text = "expected a one-dimensional NumPy array of float32";
             return Err(PyTypeError::new_err(text));
         };
-        // `as_slice_mut` would also refuse it, but without advice.
+        // `as_slice_mut` would also refuse such an array, but its error gives no advice.
         if !array.is_c_contiguous() {
             let text = "the array is not contiguous; give one without gaps, or render and copy";
             return Err(PyValueError::new_err(text));
@@ -112,7 +113,7 @@ impl Voice {
         py.detach(|| self.lock().set_motion(motion).map_err(raised))
     }
 
-    /// Returns the samples of a path: one motion for each block of samples.
+    /// Returns the samples of a path, which has one motion for each block of samples.
     #[pyo3(signature = (speed_mm_s, force_n, position_mm=None, block=64, *, x_mm=None, y_mm=None))]
     #[allow(clippy::too_many_arguments)]
     fn render_path<'py>(
@@ -139,7 +140,7 @@ impl Voice {
         Ok(samples.into_pyarray(py))
     }
 
-    /// Sets the gain. The change takes 10 ms.
+    /// Sets the gain. The voice reaches the new gain within 10 ms.
     fn set_gain(&self, py: Python<'_>, gain: f64) -> PyResult<()> {
         py.detach(|| self.lock().set_gain(gain).map_err(raised))
     }
@@ -150,15 +151,15 @@ impl Voice {
         py.detach(|| self.lock().is_silent())
     }
 
-    /// Edges of the bands of `envelope`, hertz: one more than there are bands.
+    /// Edges of the bands of `envelope`, hertz. There is one edge more than bands.
     #[getter]
     fn envelope_edges_hz<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let edges_hz = py.detach(|| self.lock().envelope_edges_hz().to_vec());
         edges_hz.into_pyarray(py)
     }
 
-    /// Returns what was rendered since the last call: level, mean frequency and mean squares in
-    /// bands.
+    /// Returns the level, the mean frequency and the mean square in each band of what was rendered
+    /// since the last call.
     fn envelope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (envelope, bands) = py.detach(|| {
             let mut voice = self.lock();
@@ -174,7 +175,8 @@ impl Voice {
         data(py, "Envelope", &fields)
     }
 
-    /// Returns how this voice plays a motion.
+    /// Returns how this voice plays a motion, and whether the motion lies within the recorded
+    /// conditions.
     fn coverage<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-"""A simulated recording, an asset of it, and the command."""
+"""Fixtures: a simulated recording, an asset that was fitted to it, and the command."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def command(*arguments: object, cwd: pathlib.Path, code: int = 0) -> subprocess.
 
 @pytest.fixture(scope="session")
 def place(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """A folder with rec.csv, a recording, and cloth.htex, the asset that the command fits to it."""
+    """Return a folder with a recording, rec.csv, and the asset that the command fits to it,
+    cloth.htex."""
     folder = tmp_path_factory.mktemp("place")
     command("simulate", "--surface", "coarse-fabric", "-o", "rec.csv", cwd=folder)
     command("fit", "rec.csv", "-o", "cloth.htex", "--license", "CC0-1.0", cwd=folder)

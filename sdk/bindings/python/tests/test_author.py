@@ -1,4 +1,4 @@
-"""Spectra, fits and agreement: against SciPy, the golden vectors and the command."""
+"""Compare spectra, fits and agreement with SciPy, the golden vectors and the command."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def hold(case: dict, name: str, got: object) -> None:
 
 
 def closed_form() -> np.ndarray:
-    """Back-and-forth sweeps with four sinusoids, on two axes: the recording of the golden vectors."""
+    """Return the recording of the golden vectors: back-and-forth sweeps with four sinusoids on two
+    axes."""
     n = np.arange(200_000)
     t, tau = n / 20_000, n % 25_000
     sign = np.where(n // 25_000 % 2 == 0, 1.0, -1.0)
@@ -146,7 +147,7 @@ def test_arrays_have_the_channels_of_files(place: pathlib.Path) -> None:
 def test_columns_of_frames_are_known_by_their_names(place: pathlib.Path) -> None:
     import pandas as pd
 
-    # Later columns come first: their names say what they are.
+    # The later columns come first here. Their names state what they are.
     frame = pd.read_csv(place / "rec.csv", comment="#").iloc[:, ::-1]
     expected = htex.process(place / "rec.csv")
     for recording in [frame, {name: frame[name].to_numpy() for name in frame}]:

@@ -1,4 +1,4 @@
-"""Files that are not assets: an exception of the right class, never the end of the process."""
+"""Files that are not assets raise an exception of the right class, and never end the process."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ def mutated(data: bytes, random_: random.Random) -> bytes:
 
 
 def repacked(data: bytes, random_: random.Random) -> bytes:
-    """Change bytes of one entry of an asset; the checksums are valid, so that later stages read it."""
+    """Change bytes of one entry of an asset. The checksums are made valid, so that later stages
+    read it."""
     file = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(file, "w") as new:
         names = old.namelist()
@@ -66,7 +67,7 @@ def test_mutated_assets_are_opened_or_refused(
             refused += 1
     assert refused > count // 4
     if change is repacked:
-        # Changes of parameters are still an asset.
+        # If only parameters are changed, the file is still an asset.
         assert refused < count
 
 

@@ -1,4 +1,4 @@
-"""Libraries from recipes: here, and on a cluster of processes."""
+"""Build libraries from recipes, in this process and on a cluster of processes."""
 
 from __future__ import annotations
 
@@ -48,20 +48,20 @@ def recipe(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 
 @pytest.fixture(scope="module")
 def local(recipe: pathlib.Path) -> dict[str, bytes]:
-    """What a build on this machine writes."""
+    """Return the files that a build on this machine writes."""
     report = htex.build(recipe, recipe.parent / "local")
     assert report["library"]["textures"] == 12
     return results(recipe.parent / "local")
 
 
 def results(folder: pathlib.Path) -> dict[str, bytes]:
-    """All files of a build but what is kept for the next one."""
+    """Return all files of a build, except those that are kept for the next build."""
     files = (file for file in folder.rglob("*") if file.is_file() and ".htex-build" not in file.parts)
     return {str(file.relative_to(folder)): file.read_bytes() for file in files}
 
 
 class Cluster:
-    """A scheduler and workers, each a process, on loopback."""
+    """Start a scheduler and workers on this machine. Each is a process."""
 
     def __init__(self, folder: pathlib.Path) -> None:
         with socket.socket() as free:
@@ -73,7 +73,7 @@ class Cluster:
 
     def start(self, *words: str) -> subprocess.Popen[bytes]:
         environment = os.environ | {
-            # A worker that does not answer is lost after 3 s instead of 5 min.
+            # A worker that does not answer counts as lost after 3 s instead of 5 min.
             "DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s",
             "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "10",
         }
@@ -171,7 +171,8 @@ def test_what_cannot_be_made_is_named(recipe: pathlib.Path, cluster: Cluster, tm
 
 
 def test_a_recipe_that_nests_without_end_is_an_exception(tmp_path: pathlib.Path) -> None:
-    """The parser of TOML would end the interpreter by its stack; on a thread the stack is smaller still."""
+    """Otherwise the TOML parser would overflow the stack and end the interpreter. The stack of a
+    thread is even smaller."""
     lines = "motion = { const']\nphases = ['testing']\n" * 7_200
     deep = "[library]\nname = " + "[" * 100_000
     for text, place in ((lines, "line 1, column 18"), (deep, "line 2, column 32")):
@@ -182,14 +183,14 @@ def test_a_recipe_that_nests_without_end_is_an_exception(tmp_path: pathlib.Path)
 
 
 def error_of(folder: pathlib.Path) -> list[str]:
-    """The error that a report has, line by line."""
+    """Return the error that a report states, line by line."""
     report = json.loads((folder / "build-report.json").read_text())
     error: list[str] = report.get("error", [])
     return error
 
 
 class Files(http.server.BaseHTTPRequestHandler):
-    """Files of a folder by HTTP, with ranges and entity tags."""
+    """Serve the files of a folder by HTTP, with ranges and entity tags."""
 
     folder: pathlib.Path
     seen: list[str]
@@ -223,7 +224,7 @@ class Files(http.server.BaseHTTPRequestHandler):
 
 @pytest.fixture
 def served(recipe: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
-    """The recipe's folder by HTTP: its URL, and the requests."""
+    """Serve the recipe's folder by HTTP. Return its URL and the requests."""
     monkeypatch.setenv("NO_PROXY", "127.0.0.1")
     seen: list[str] = []
     handler = type("Handler", (Files,), {"folder": recipe.parent, "seen": seen})
@@ -239,7 +240,7 @@ def test_workers_read_recordings_by_uri(
     url, seen = served
     names = sorted(file.name for file in recipe.parent.glob("*.csv"))
     table = "recording\n" + "".join(f"{url}/{name}\n" for name in names)
-    # A recipe names the server that it is on itself, and no other of this machine.
+    # A recipe may name the server from which it comes, but no other server on this machine.
     (recipe.parent / "all.table").write_text(table)
     (recipe.parent / "away.toml").write_text(RECIPE.replace('recordings = "*.csv"', 'table = "all.table"'))
     away = f"{url}/away.toml"

@@ -1,4 +1,5 @@
-"""What the command makes, mixes, edits, compares, simulates and measures, as functions: the same files and numbers."""
+"""The functions of the package give the same files and numbers as the command: make, mix, edit,
+compare, simulate and measure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Files of other formats, and devices by name: the same files, numbers and refusals as the command's."""
+"""Files of other formats, and devices by name, give the same files, numbers and errors as the
+command."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ import htex
 
 
 def png(rows: list[bytes]) -> bytes:
-    """An 8-bit grey PNG, written from its specification."""
+    """Return an 8-bit grey PNG, written according to the specification of PNG."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -26,7 +27,7 @@ def png(rows: list[bytes]) -> bytes:
 
 
 def rows_of(file: bytes) -> list[bytes]:
-    """The rows of an 8-bit grey PNG."""
+    """Return the rows of an 8-bit grey PNG."""
     data, width, at = b"", struct.unpack(">I", file[16:20])[0], 8
     while at < len(file):
         (length,), kind = struct.unpack(">I", file[at : at + 4]), file[at + 4 : at + 8]

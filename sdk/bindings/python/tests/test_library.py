@@ -1,4 +1,4 @@
-"""Libraries: packing, searching and opening."""
+"""Pack, search and open libraries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import htex
 
 @pytest.fixture(scope="module")
 def library(texture: htex.Texture, place: pathlib.Path) -> htex.Library:
-    """Three textures: of an object, of bytes, of a file."""
+    """Pack three textures: an object, bytes and a file."""
     cloth = place / "cloth.htex"
     path = place / "three.htexlib"
     textures = {"woven/b": texture, "woven/a": cloth.read_bytes(), "Felt": cloth}

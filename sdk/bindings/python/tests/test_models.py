@@ -1,4 +1,4 @@
-"""Models that are written in Python: registered, fitted, played; their errors."""
+"""Register, fit and play models that are written in Python, and check their errors."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_an_asset_names_a_model_of_python(place: pathlib.Path) -> None:
     assert htex.unregister_model(ID) and not htex.unregister_model(ID)
     with pytest.raises(htex.ModelError, match=ID):
         htex.open(place / "plateau.htex").voice()
-    # A texture keeps the models with which it was opened; a pickled one is opened again.
+    # A texture keeps the models with which it was opened. A pickled texture is opened again.
     assert fit.texture.voice().render(100).tobytes() == samples.tobytes()
     with pytest.raises(htex.ModelError, match=ID):
         pickle.loads(pickle.dumps(fit.texture)).voice()
@@ -115,7 +115,7 @@ def test_noise_has_the_magnitudes_of_the_model(place: pathlib.Path) -> None:
     samples = texture.voice(seed=3).render(20_000 * 60)
     frequency, power = signal.welch(samples, 20_000, "hann", 4000, scaling="spectrum")
     parameters = texture.parameters()
-    # Two bins beside each edge hold parts of both sides.
+    # The two bins next to each edge contain parts of both sides.
     inside = (frequency > parameters["low_hz"] + 10) & (frequency < parameters["high_hz"] - 10)
     expected = texture.spectrum(frequency[inside]).magnitude
     assert 10 * abs(np.log10(2 * power[inside].mean() / (expected**2).mean())) < 0.3

@@ -1,4 +1,4 @@
-"""The notebooks: executed from their first cell to the last; they assert their numbers themselves."""
+"""Execute the notebooks from the first cell to the last. They assert their numbers themselves."""
 
 from __future__ import annotations
 

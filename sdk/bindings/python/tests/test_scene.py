@@ -1,4 +1,4 @@
-"""Scenes: plans and samples, equal to the command's."""
+"""Plans and samples of scenes are equal to those of the command."""
 
 from __future__ import annotations
 

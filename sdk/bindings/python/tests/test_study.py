@@ -1,4 +1,5 @@
-"""The analysis of a study: golden numbers, pages and schema, tables as laboratories have them, and the command."""
+"""The analysis of a study: golden numbers, pages and schema, tables as laboratories store them, and
+the command."""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ SMALL = "a,t,m,1,3\na,t,n,1,4\nb,t,m,1,2\nb,t,n,1,4\n"
 
 
 def agree(expected: Any, got: Any, at: str, rtol: float, atol: float) -> int:
-    """Compare all values under ``expected``, and count the numbers."""
+    """Compare all values in ``expected``, and count the numbers."""
     if isinstance(expected, dict):
         return sum(agree(value, got.get(key), f"{at}.{key}", rtol, atol) for key, value in expected.items())
     if isinstance(expected, list):
@@ -42,7 +43,8 @@ def agree(expected: Any, got: Any, at: str, rtol: float, atol: float) -> int:
 
 
 def ask(*words: object) -> tuple[int, str, str]:
-    """Run the command in this process: exit status, standard output, standard error."""
+    """Run the command in this process. Return its exit status, standard output and standard
+    error."""
     out, err = io.TextIOWrapper(io.BytesIO(), encoding="utf-8"), io.StringIO()
     before, (sys.stdout, sys.stderr) = (sys.stdout, sys.stderr), (out, err)
     try:
@@ -93,7 +95,7 @@ def test_intraclass_correlations_are_those_of_pingouin(golden: study.Analysis) -
 
 
 def test_nemenyi_names_the_pairs_of_friedman(golden: study.Analysis) -> None:
-    """By the definition: mean ranks, and the studentised range of them."""
+    """Compute the test by its definition: mean ranks, and their studentised range."""
     from scipy import stats
 
     table = golden.ratings.marginal("model").round(9)
@@ -150,11 +152,12 @@ def test_the_files_hold_the_same_and_the_page_is_one_file(golden: study.Analysis
     assert json.loads((tmp_path / "analysis.json").read_text()) == json.loads(golden.to_json())
     page = (tmp_path / "report.html").read_text()
     assert not any(word in page for word in ("<script", "src=", ' href="http', "NaN", "None"))
-    # Ratings and correlations, each for all textures and for five; equivalence; the regressions.
+    # The figures are ratings and correlations, each for all textures and for five; equivalence; and
+    # the regressions.
     assert page.count('role="img"') == 6 + 6 + 2
     assert len(list((tmp_path / "figures").glob("*.svg"))) == len(list((tmp_path / "figures").glob("*.pdf"))) == 14
     assert len(pd.read_csv(tmp_path / "pairs.csv")) == 10 + 5 * 10
-    # No link in the folder is followed.
+    # The command follows no link in the folder.
     linked, outside = tmp_path / "linked", tmp_path / "outside"
     linked.mkdir()
     outside.mkdir()
@@ -247,7 +250,8 @@ def test_a_missing_cell_does_not_end_the_analysis() -> None:
 
 
 def test_one_factor_is_analysed() -> None:
-    """25 textures of one model: what has two factors is named in the notes, what has one is computed."""
+    """With 25 textures and one model, tests with two factors are named in the notes, and tests with
+    one factor are computed."""
     random = np.random.default_rng(5)
     cells = [(f"p{p:02}", f"t{t:02}") for p in range(12) for t in range(25)]
     table = pd.DataFrame(cells, columns=["participant", "texture"])
@@ -349,7 +353,7 @@ def test_bad_spectra_have_codes() -> None:
         (gap, {"SPECTRA_CELL_MISSING", "SPECTRA_MAGNITUDE_MISSING"}),
     ]:
         assert {finding.code for finding in study.analyse(ratings, table).findings} == found
-    # Equal spectra explain nothing: the regressions are named as missing.
+    # Equal spectra explain nothing, so the notes name the regressions as missing.
     result: Any = study.analyse(ratings, whole).to_dict()
     assert ("bands.1", "NO_PREDICTOR") in [
         (note["group"], note["code"]) for note in result["notes"]

@@ -1,4 +1,4 @@
-"""The analysis of made-up studies whose truth is known, and of tables of any kind."""
+"""The analysis of made-up studies whose true effects are known, and of random tables."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def felt(random: np.random.Generator) -> Spectra:
 
 
 def test_the_regression_rejects_one_null_study_in_twenty() -> None:
-    """Of 1000, at nine bands and at 20: 12.8 and 19.7 % as if z-scores were independent, 4.2 and 6.4 % within."""
+    """False positives among 1000 studies, with nine and with 20 bands: 12.8 and 19.7 % if z-scores
+    are treated as independent, 4.2 and 6.4 % with the test within cells."""
     random, studies = np.random.default_rng(1), 300
     before, after = {9: 0, 20: 0}, {9: 0, 20: 0}
     for _ in range(studies):
@@ -55,7 +56,8 @@ def test_the_regression_rejects_one_null_study_in_twenty() -> None:
 
 
 def test_normality_is_that_of_residuals() -> None:
-    """If models differ, cell means have two peaks. Of 40 studies, the test of cell means fails in all, the test of residuals in one."""
+    """If models differ, the distribution of cell means has two peaks. In 40 studies, the normality
+    test of cell means fails in all, the test of residuals in one."""
     random, cells, residuals = np.random.default_rng(2), 0, 0
     for _ in range(40):
         table = random.normal(size=(PEOPLE, MODELS)) * 0.3 + np.array([0, 4, 0, 4, 4])
@@ -66,7 +68,9 @@ def test_normality_is_that_of_residuals() -> None:
 
 
 def test_nine_planted_bands_are_found_and_noise_has_none() -> None:
-    """Of 40: nine bands in 40 of those made from nine; on noise no bands in 39, and 20 of them predict worse than the mean in 40."""
+    """Among 40 studies that are made from nine bands, nine bands are preferred in 40. Among 40
+    studies with noise, no bands are preferred in 39, and 20 bands predict worse than the mean in
+    40."""
     random, nine, none, negative = np.random.default_rng(3), 0, 0, 0
     weights = bank(9)[0]
     sizes = np.where(np.arange(9) % 2, 1, -1) / np.linalg.norm(weights, axis=0)
@@ -85,7 +89,8 @@ def test_nine_planted_bands_are_found_and_noise_has_none() -> None:
 
 
 def test_equivalence_is_found_where_it_is_and_only_there() -> None:
-    """At the bound itself it is claimed in one of twenty studies; without a difference in nearly all."""
+    """If the difference is equal to the bound, equivalence is claimed in one of twenty studies;
+    without a difference, in nearly all."""
     random, at_bound, equal = np.random.default_rng(4), 0, 0
     for _ in range(400):
         a, b = random.normal(3, 0.4, (2, 30))
@@ -95,7 +100,8 @@ def test_equivalence_is_found_where_it_is_and_only_there() -> None:
 
 
 def test_cross_validation_predicts_each_group_from_the_others() -> None:
-    """By the definition; one predictor depends on others, groups are of different sizes, and their rows are mixed."""
+    """Compute the value by its definition. One predictor depends on others, groups have different
+    sizes, and their rows are mixed."""
     random = np.random.default_rng(5)
     x = random.normal(size=(90, 4))
     x = np.column_stack([x, 2 * x[:, 0] - x[:, 2]])
@@ -122,7 +128,8 @@ NUMBERS = st.floats(-5, 5).map(lambda value: round(value, 3))
 @settings(deadline=None)
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=20))
 def test_f_is_the_square_of_t(values: list[tuple[float, float]]) -> None:
-    """With two conditions an ANOVA is a paired t-test; intervals and p-values say the same."""
+    """With two conditions, an ANOVA is a paired t-test. Intervals and p-values lead to the same
+    decision."""
     from htex.study.anova import one_way
 
     table = np.array(values)
@@ -140,7 +147,8 @@ def test_f_is_the_square_of_t(values: list[tuple[float, float]]) -> None:
 
 @st.composite
 def studies(draw: Any) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Ratings of whole numbers and spectra of few magnitudes: ties, constants, holes."""
+    """Ratings are whole numbers, and spectra have few different magnitudes, so there are ties,
+    constants and missing values."""
     people, textures, models = (draw(st.integers(1, most)) for most in (5, 3, 4))
     cells = [(f"p{p}", f"t{t}", f"m{m}") for p in range(people) for t in range(textures) for m in range(models)]
     values = draw(st.lists(st.integers(0, 3), min_size=len(cells), max_size=len(cells)))

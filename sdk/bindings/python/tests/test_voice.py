@@ -1,4 +1,4 @@
-"""Samples: equal to the command's, in blocks, along paths, in threads."""
+"""Samples of voices: the same as the command's, in blocks, along paths and in threads."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def played(place: pathlib.Path, *flags: str, asset: str = "cloth.htex") -> np.nd
 
 @pytest.fixture(scope="module")
 def every(place: pathlib.Path) -> htex.Texture:
-    """An asset of every model, those too that are fitted only where they are named."""
+    """Return an asset with every model, including the models that are fitted only if they are
+    named."""
     command("fit", "rec.csv", "--model", ",".join(model["id"] for model in htex.models()), "-o", "every.htex", cwd=place)
     return htex.open(place / "every.htex")
 
@@ -53,7 +54,7 @@ def test_samples_have_the_spectrum_that_scipy_measures(texture: htex.Texture, mo
     frequency, power = signal.welch(samples, 20_000, "hann", 4000, scaling="spectrum")
     inside = (frequency >= 40) & (frequency <= 960)
     expected = texture.spectrum(frequency[inside], model=model).magnitude
-    # In groups of eight bins, each of which averages about 1200 windows.
+    # Compares groups of eight bins. Each bin averages about 1200 windows.
     of = lambda x: np.add.reduceat(x, np.arange(0, len(x) - 8, 8))[:-1]
     error_db = 10 * np.log10(of(2 * power[inside]) / of(expected**2))
     assert abs(error_db).max() < 0.7
@@ -92,7 +93,7 @@ def test_coverage_tells_how_a_motion_is_played(texture: htex.Texture) -> None:
     faster = voice.coverage(2 * recorded.speed_mm_s, recorded.force_n)
     assert faster.speed.kind == "outside" and faster.frequency_factor == pytest.approx(2.0, rel=1e-3)
     assert texture.contact == "finger" and texture.law["frequency_speed"].source == "assumed"
-    # What is stated is what plays.
+    # The voice plays what the texture states.
     level = texture.level(at=(recorded.speed_mm_s, 2 * recorded.force_n))
     assert level == pytest.approx(2 * texture.level(), rel=0.05) and texture.level(at=(0.0, 0.4)) == 0.0
     assert not voice.coverage(0.0, 0.4).slides
@@ -199,7 +200,7 @@ def test_the_envelope_is_that_of_the_samples(texture: htex.Texture) -> None:
     envelope = voice.envelope()
     assert envelope.frames == len(samples)
     assert envelope.level_rms == pytest.approx(np.sqrt(np.mean(samples**2)), rel=1e-6)
-    # Hann windows of 1024 samples, of which one ends every 256; samples before the first are 0.
+    # Hann windows of 1024 samples. One ends every 256 samples, and samples before the first are 0.
     padded = np.concatenate([np.zeros(1024), samples])
     ends = np.arange(256, len(samples) + 1, 256)
     window = signal.get_window("hann", 1024)

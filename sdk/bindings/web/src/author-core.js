@@ -1,5 +1,5 @@
-// The author module: calls its one function with JSON documents and the bytes of files. For this
-// thread; `author.js` has it for programs.
+// Calls the single function of the author module, with a JSON document and the bytes of files. Runs
+// in the calling thread. Programs use `author.js` instead.
 
 import { Core, HtexError } from "./core.js";
 import { Guests } from "./guests.js";

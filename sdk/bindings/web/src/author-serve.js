@@ -1,5 +1,5 @@
-// Fits for a page or a program, in a worker. Each call has its own instance, whose memory is freed
-// afterwards.
+// Runs fits and imports for a page or a program, in a worker. Each call has its own instance of the
+// module, whose memory is freed afterwards.
 
 import { AuthorCore } from "./author-core.js";
 

@@ -1,10 +1,10 @@
-// Calls of modules in a worker: fits and imports.
+// Calls modules in a worker, for fits and imports.
 
 import { HtexError } from "./core.js";
 import { host } from "./host.js";
 
 let startWorker = null;
-/** A worker that waits for the next call. */
+/** An idle worker that waits for the next call, or null. */
 let idle = null;
 
 /** Sets how the worker is started, if a bundler has moved it. */
@@ -16,7 +16,7 @@ export function setThread(worker) {
 
 /** Starts the worker of a page. */
 function startInPage() {
-  // Bundlers recognise this form.
+  // Bundlers recognise this form of the call.
   return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
 }
 
@@ -26,7 +26,9 @@ function takeWorker() {
   return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
 }
 
-/** Keeps a worker for the next call. It does not keep a Node.js program running. */
+/**
+ * Keeps a worker for the next call. While it is idle, it does not keep a Node.js program running.
+ */
 function giveBack(worker) {
   worker.onmessage = null;
   worker.onerror = null;
@@ -44,8 +46,8 @@ export function throwIfAborted(signal, what) {
 }
 
 /**
- * Calls a function, by name, in the module that `loading` promises. Returns its document and its
- * bytes. The worker takes over the buffers `copies`.
+ * Calls a function by its name, in the module to which the promise `loading` resolves. Returns the
+ * resulting document and bytes. The buffers in `copies` are transferred to the worker.
  */
 export async function inThread(name, loading, call, { copies, onProgress, signal }) {
   loading.catch(() => {});

@@ -1,4 +1,4 @@
-// The worker of a page that fits models.
+// The worker of a page that runs fits and imports.
 
 import { serveAuthor } from "./author-serve.js";
 

@@ -1,4 +1,4 @@
-// The Node.js thread that fits models.
+// The Node.js thread that runs fits and imports.
 
 import { parentPort } from "node:worker_threads";
 

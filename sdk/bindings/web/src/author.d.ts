@@ -1,9 +1,11 @@
-/** Making textures: fit recordings, write parameters, mix and edit textures. */
+/** Make textures: fit recordings, write parameters, mix and edit textures. */
 
 import type { Address, Bytes, Quantity, Readable, Texture } from "./index.js";
 import type { SignalLike, WorkerLike } from "./web.js";
 
-/** A file: its bytes and its name, which tells what kind of recording it is. */
+/**
+ * A file: its bytes and its name. The extension of the name determines the format of a recording.
+ */
 export interface NamedBytes {
   name: string;
   bytes: Bytes;
@@ -13,19 +15,19 @@ export interface NamedBytes {
 export type NamedFile = Readable & { readonly name: string };
 
 /**
- * Settings that would fix a problem: names from `ReadingSettings` and `FitSettings`, some with a
- * value ("segments windows").
+ * A warning or a note. `settings` would fix the problem: names from `ReadingSettings` and
+ * `FitSettings`, some with a value ("segments windows").
  */
 export interface Notice {
   text: string;
   settings: string[];
 }
 
-/** A finding. `Author.explain` explains its code. */
+/** A problem that was found in a file. `Author.explain` explains its code. */
 export interface Finding {
   code: string;
   severity: "error" | "warning" | "info";
-  /** JSON pointer into the manifest; empty for the file as a whole. */
+  /** JSON pointer to the place in the manifest; empty for the whole file. */
   pointer: string;
   message: string;
   settings: string[];
@@ -45,12 +47,12 @@ export interface ModelField {
   name: string;
   /** Unit; "1" for a pure number. */
   unit: string;
-  /** One number, or a list of at most `max_len`. */
+  /** One number, or a list of at most `max_len` numbers. */
   kind: { type: "scalar" } | { type: "list"; max_len: number };
-  /** Minimum and maximum. */
+  /** Smallest and largest allowed value. */
   min: number;
   max: number;
-  /** The range for most textures, and the scale on which sliders should show it. */
+  /** The range of most textures, and the scale of a slider for it. */
   usual?: { min: number; max: number; scale: "linear" | "log" };
   default?: number;
   description: string;
@@ -62,7 +64,10 @@ export interface Model {
   version: string;
   summary: string;
   fields: ModelField[];
-  /** Options for fitting. `sweep` and `sweep_alone` are values for comparing accuracy with cost. */
+  /**
+   * Options for fitting. `sweep` and `sweep_alone` are the values to try when accuracy is compared
+   * with cost. `not_above` names another option whose value is the upper limit of this one.
+   */
   options: {
     name: string;
     default: number;
@@ -74,15 +79,15 @@ export interface Model {
     not_above?: string;
     description: string;
   }[];
-  /** Whether the level is one of the parameters. */
+  /** Whether the level is one of the model's parameters. */
   keeps_level?: boolean;
 }
 
-/** What a texture is, who made it, and how it was recorded. */
+/** Metadata of a texture: what it is, who made it, and how it was recorded. */
 export interface Metadata {
   name?: string;
   author?: string;
-  /** SPDX expression, such as "CC-BY-4.0". */
+  /** The licence as an SPDX expression, such as "CC-BY-4.0". */
   license?: string;
   description?: string;
   tags?: string[];
@@ -91,16 +96,19 @@ export interface Metadata {
   sensor?: string;
   finger?: string;
   contact?: "finger" | "tool" | "unknown";
-  /** Exponents of the law outside the recorded motions. */
+  /**
+   * Exponents of the law, which states how frequencies and level change with speed and force
+   * outside the recorded conditions.
+   */
   law?: { frequency_speed?: number; level_speed?: number; level_force?: number };
 }
 
-/** A model's parameters at a condition. */
+/** The parameters of a model at one condition. */
 export interface MadeAt {
-  /** Speed, mm/s, and force, N. Give both for every condition, or neither. */
+  /** Speed (mm/s) and force (N). Give both for every condition, or neither for any. */
   speed?: number;
   force?: number;
-  /** RMS in the quantity's unit. May be absent for a model with `keeps_level`. */
+  /** RMS in the quantity's unit. It may be absent for a model with `keeps_level`. */
   level?: number;
   parameters: Record<string, number | number[]>;
 }
@@ -109,52 +117,58 @@ export interface MakeOptions extends Metadata {
   representations: { model: string; conditions: MadeAt[] }[];
   /** Default "lateral_force". */
   quantity?: RecordedQuantity;
-  /** The quantity's unit, which is checked. */
+  /** The quantity's unit. Another unit than the quantity has is an error. */
   unit?: string;
   /** Lowest and highest frequency, Hz. Default 20 to 1000. */
   band?: [number, number];
 }
 
-/** How recordings are read. The names are the keywords of the Python package. */
+/**
+ * How recordings are read. The settings have the same names as the keywords in the Python package.
+ */
 export interface ReadingSettings {
-  /** Sample rate, if the file does not state it. */
+  /** Sample rate, Hz, if the file does not state it. */
   rate_hz?: number;
-  /** Roles of columns: `lateral=lateral_V:0.4444,normal=#3`. */
+  /** Role of each column, with a factor if needed, such as `lateral=lateral_V:0.4444,normal=#3`. */
   map?: string;
-  /** Files with the finger's motion: one for each recording, or one for all. */
+  /** Tracker files with the finger's motion: one for each recording, or one for all. */
   tracker?: NamedBytes | NamedBytes[];
   tracker_map?: string;
   quantity?: RecordedQuantity;
-  /** Value of a full-scale sample in WAV, FLAC and NPY, in the quantity's unit. */
+  /** Value of a full-scale sample in a WAV, FLAC or NPY file, in the quantity's unit. */
   scale?: number;
-  /** Response of the recording setup, a CSV. */
+  /** Frequency response of the recording setup, as a CSV file. */
   response?: NamedBytes;
   from_s?: number;
   to_s?: number;
   most_values?: number;
   segments?: "auto" | "sweeps" | "windows";
   averaging?: "magnitude" | "rms" | "complex";
-  /** Speed and force, if the recording does not state them or to override what it states. */
+  /**
+   * Speed (mm/s) and force (N). Needed if the recording does not state them; otherwise they
+   * override it.
+   */
   speed_mm_s?: number;
   force_n?: number;
-  /** Refuse recordings that have errors or warnings. */
+  /** Refuse recordings with findings that are errors or warnings. */
   strict?: boolean;
 }
 
-/** How models are fitted, and the texture's metadata. */
+/** How recordings are read, how models are fitted, and the texture's metadata. */
 export interface FitSettings extends ReadingSettings, Metadata {
-  /** Models by short name or id. Default: all. */
+  /** Short names or ids of the models to fit. Default: all. */
   models?: string | string[];
-  /** Options of models: `{ ar: { order: 6 } }`. */
+  /** Options of each model, such as `{ ar: { order: 6 } }`. */
   options?: Record<string, Record<string, number | string>>;
   level?: "fitted" | "recording";
-  /** Keep the recorded spectra in the texture. */
+  /** Store the recorded spectra in the texture. */
   keep_reference?: boolean;
   /**
-   * A grid of conditions for recordings of a free motion: lists of speeds (mm/s) and forces (N).
+   * Divides recordings of a free motion into conditions. The grid lines are speeds (mm/s) and
+   * forces (N).
    */
   grid?: "auto" | { speed?: number[]; force?: number[] };
-  /** Speed and force: one for each recording, or one for all. */
+  /** Speed (mm/s) and force (N): one pair for each recording, or one for all. */
   conditions?: { speed?: number; force?: number }[];
 }
 
@@ -168,27 +182,27 @@ export interface RecordedSpectrum {
   repeatability_rms_db: number | null;
 }
 
-/** How the columns of a file are interpreted. */
+/** The columns of a recording, and how they are interpreted. */
 export interface Columns {
   columns: {
     name: string;
     /** "lateral", "normal", "time" and others; null for a column that is ignored. */
     role: string | null;
-    /** Factor that converts the column to the unit. */
+    /** Factor that converts the numbers in the file to `unit`. */
     scale: number;
     unit: string;
-    /** The first numbers, as the file states them. */
+    /** The first numbers of the column, as in the file. */
     first: number[];
   }[];
-  /** The rate that the file states. */
+  /** The sample rate that the file states, Hz. */
   rate_hz: number | null;
-  /** The roles in the form of the setting `map`, so that they can be corrected. */
+  /** The roles as a value of the setting `map`. Correct this value to change the roles. */
   map: string;
-  /** Why the file cannot be read as a recording; absent if it can. */
+  /** Why the file cannot be read as a recording; null if it can. */
   problem: string | null;
 }
 
-/** A recording as it is read. */
+/** A recording that was read, and its spectrum. */
 export interface Processed {
   columns: Columns;
   rate_hz: number;
@@ -197,25 +211,25 @@ export interface Processed {
   spectrum: RecordedSpectrum;
   segments: number;
   from_sweeps: boolean;
-  /** Segments that are read, s. */
+  /** Start and end of each segment that was read, s. */
   read_s: [number, number][];
   condition: { speed: number | null; force: number | null };
-  /** Minimum and maximum over the segments. */
+  /** Lowest and highest speed (mm/s) and force (N) of the segments. */
   speed_spread: [number, number] | null;
   force_spread: [number, number] | null;
   findings: Finding[];
   warnings: Notice[];
   notes: Notice[];
   /**
-   * The signals in at most 1000 time steps, as the minimum and maximum of each step: "signal",
-   * "signal_y", "signal_z", "normal", "speed".
+   * The signals, for drawing: the minimum and maximum in each of at most 1000 time steps. The
+   * signals are "signal", "signal_y", "signal_z", "normal" and "speed".
    */
   picture: { from_s: number; step_s: number; steps: number; signals: Record<string, { least: Float32Array; greatest: Float32Array }> };
 }
 
 /**
- * A recording as sound: a seamless loop, limited to the band, compensated, and reduced to one axis
- * in the same way as its spectrum.
+ * A recording as sound: a seamless loop. It is limited to the band, corrected for the response of
+ * the recording setup, and reduced to one axis in the same way as its spectrum.
  */
 export interface RecordedLoop {
   /** Name of the recording. */
@@ -231,22 +245,22 @@ export interface RecordedLoop {
 }
 
 export interface BakeOptions {
-  /** Name of the array. */
+  /** Name of the array in the C and Rust code. */
   name?: string;
-  /** Default: the representation with the smallest error. */
+  /** Id or short name of the model. Default: the representation with the smallest error. */
   model?: string;
   /** Sample rate of the player, Hz. Default 8000. */
   rate?: number;
-  /** Largest nine-band error between conditions, dB. Default 0.3. */
+  /** Largest allowed nine-band error between conditions, dB. Default 0.3. */
   within?: number;
   /**
-   * Speeds, mm/s, and forces, N. Every speed is combined with every force. Default: the first
-   * condition, or the strongest if the first is silent.
+   * Speeds (mm/s) and forces (N) of the block's conditions. Every speed is combined with every
+   * force. Default: only the first recorded condition, or the strongest one if the first is silent.
    */
   grid?: { speed: number[]; force: number[] };
 }
 
-/** A block for players on microcontrollers; see `docs/microcontroller.md`. */
+/** Licence and author of a texture, for files that are made from it. */
 export interface Rights {
   license: string | null;
   author: string | null;
@@ -254,28 +268,33 @@ export interface Rights {
   riff: Uint8Array;
 }
 
+/** A baked texture: a block of data for microcontrollers; see `docs/microcontroller.md`. */
 export interface Baked {
   bytes: Uint8Array;
   model: string;
   quantity: RecordedQuantity;
   unit: string;
-  /** A magnitude that samples rarely exceed. */
+  /** An absolute value that samples rarely exceed. */
   full_scale: number;
   rate_hz: number;
   speeds: number[];
   forces: number[];
   /**
-   * Largest nine-band errors: at the conditions, midway between them and, if known, beyond them.
+   * Largest nine-band errors, dB: at the conditions, midway between them, and beyond them (null if
+   * unknown).
    */
   error_at_conditions_db: number;
   error_between_db: number;
   error_beyond_db: number | null;
-  /** The block as a C header and as Rust code. */
+  /** The block as a C header (`c`) and as Rust code (`rust`). */
   c: string;
   rust: string;
 }
 
-/** How much of the difference between a model and the recording is felt; see `spec/htex-1.md`. */
+/**
+ * How much of the difference between a model and the recording a finger can feel; see
+ * `spec/htex-1.md`.
+ */
 export interface FeltError {
   error_rms_db: number;
   largest_error_db: number;
@@ -285,30 +304,38 @@ export interface FeltError {
   within_repeatability: boolean;
 }
 
-/** A texture to compare: played by a model, at a motion. */
+/** One of two textures to compare, the model that plays it, and the motion. */
 export interface FeltSide {
   texture: Texture | Bytes;
-  /** Default: the representation with the smallest error. */
+  /** Id or short name of the model. Default: the representation with the smallest error. */
   model?: string;
-  /** Default: the first recorded condition, or the strongest if the first is silent. */
+  /**
+   * The motion. Default: the first recorded condition, or the strongest one if the first is silent.
+   */
   at?: { speed?: number; force?: number };
 }
 
 /**
- * What a fingertip feels of a difference: levels above the detection threshold in third octaves;
- * see `docs/felt.md`.
+ * What a fingertip can feel of the difference between two textures, in third-octave bands; see
+ * `docs/felt.md`. Levels are relative to the detection threshold.
  */
 export interface Felt {
   centre_hz: number[];
-  /** Levels of the reference and of the other texture above the threshold; negative if below it. */
+  /**
+   * Levels of the reference and of the other texture above the detection threshold; negative below
+   * it.
+   */
   reference_db: number[];
   level_db: number[];
-  /** Difference between the parts above the threshold. */
+  /** Difference between the parts of both levels that are above the threshold. */
   error_db: number[];
   error_rms_db: number;
   largest_error_db: number;
   total_error_db: number;
-  /** Whether a typical and a sensitive listener feel no difference. */
+  /**
+   * Whether a typical person feels no difference (`below_difference_threshold`), and whether a
+   * sensitive person does not (`below_if_sensitive`).
+   */
   below_difference_threshold: boolean;
   below_if_sensitive: boolean;
 }
@@ -316,14 +343,14 @@ export interface Felt {
 export interface FitReport {
   models: {
     model: string;
-    /** Size of its parameters, bytes. */
+    /** Size of the model's parameters, bytes. */
     bytes: number;
     fit_ms: number;
-    /** At the condition where the difference is felt most. */
+    /** Felt difference at the condition where it is largest. */
     felt: FeltError | null;
     at: { condition: number; level_rms: number; quality: Record<string, unknown> | null; left_out: Record<string, unknown> | null; felt: FeltError | null }[];
   }[];
-  /** Ids of the models, starting with the one whose difference is felt least. */
+  /** Ids of the models. The model whose difference from the recording is felt least comes first. */
   ranked: string[];
   skipped: { model: string; reason: string }[];
   conditions: Record<string, unknown>[];
@@ -340,60 +367,62 @@ export interface Fitted {
   report: FitReport;
 }
 
-/** Makes textures, in the calling thread. */
+/** Makes textures. All calls run in the calling thread. */
 export interface Author {
   models(): Model[];
   /** Makes a texture from parameters. The texture states that it was made by hand. */
   make(options: MakeOptions): Texture;
-  /** Makes a texture between two others. `weight` is the share of the second, 0 to 1. */
+  /** Makes a texture between `a` and `b`. `weight` is the share of `b`, 0 to 1. */
   mix(a: Texture | Bytes, b: Texture | Bytes, weight: number, metadata?: Metadata): Texture;
   /** Returns the texture with other metadata. An empty text removes an entry. */
   edit(texture: Texture | Bytes, metadata: Metadata): Texture;
   /**
-   * Checks a file. Libraries and textures are recognised by their bytes, recordings by their
+   * Checks a file. Recognises libraries and textures by their bytes, and recordings by their
    * `name`.
    */
   validate(bytes: Bytes, options?: { name?: string }): Report;
-  /** Returns what a fingertip feels of the difference between a texture and a reference. */
+  /**
+   * Returns what a fingertip can feel of the difference between a reference and another texture.
+   */
   felt(reference: FeltSide, other: FeltSide): Felt;
   /**
-   * Returns the magnitudes at which sinusoids of given frequencies, Hz, reach the detection
-   * threshold, in the quantity's unit.
+   * Returns the detection threshold: for each frequency in Hz, the magnitude, in the quantity's
+   * unit, at which a finger just feels a sinusoid.
    */
   threshold(frequencies: ArrayLike<number>, options?: { quantity?: Quantity }): Float64Array;
-  /** Returns what the code of a finding means. */
+  /** Returns the meaning of a finding's code; undefined for an unknown code. */
   explain(code: string): { code: string; severity: string; summary: string; explanation: string; fix: string; settings: string[] } | undefined;
-  /** Returns how the columns of a recording are interpreted. */
+  /** Returns the columns of a recording, and how they are interpreted. */
   columns(recording: NamedBytes, settings?: ReadingSettings): Columns;
   process(recording: NamedBytes, settings?: ReadingSettings): Processed;
-  /** Returns recordings as sound, at a sample rate that is a multiple of 10 Hz. */
+  /** Returns recordings as sound. The sample rate `rate` must be a multiple of 10 Hz. */
   recorded(recordings: NamedBytes | NamedBytes[], settings: ReadingSettings & { rate: number; conditions?: FitSettings["conditions"] }): RecordedLoop[];
-  /** Fits models to recordings. The function `fit` does this in a worker. */
+  /** Fits models to recordings. The global function `fit` does this in a worker. */
   fit(recordings: NamedBytes | NamedBytes[], settings?: FitSettings): Fitted;
-  /** Bakes a block for players on microcontrollers. */
+  /** Bakes a texture: computes a block of data for players on microcontrollers. */
   bake(texture: Texture | Bytes, options?: BakeOptions): Baked;
   /**
-   * Returns licence and author of a texture: `text` has both as SPDX lines, `riff` as a chunk to
-   * append to a WAV file.
+   * Returns the licence and the author of a texture. `text` has both as SPDX lines. `riff` has both
+   * as a chunk to append to a WAV file.
    */
   rights(texture: Texture | Bytes): Rights;
   /**
-   * Packs textures, by name, into a `.htexlib` file. Each must state a licence, unless `unlicensed`
-   * allows textures without one.
+   * Packs textures into a `.htexlib` file, under the names that are the keys of `textures`. Each
+   * texture must state a licence, unless `unlicensed` is true.
    */
   library(textures: Record<string, Texture | Bytes>, options?: { name?: string; unlicensed?: boolean }): Uint8Array;
 }
 
-/** Loads the author module. */
+/** Loads the WASM module that makes textures. */
 export function loadAuthor(): Promise<Author>;
 
 export interface FitOptions extends FitSettings {
   /**
-   * Called with the number of finished steps, the total number, and what begins: "read felt.csv",
-   * "fit ar".
+   * Called when a step begins: with the number of finished steps, the total number of steps, and a
+   * text that describes the step, such as "read felt.csv" or "fit ar".
    */
   onProgress?: (progress: { done: number; of: number; text: string }) => void;
-  /** Aborts the fit, which then fails with an HtexError with the code "aborted". */
+  /** Aborts the fit, which then fails with an HtexError whose code is "aborted". */
   signal?: SignalLike;
 }
 
@@ -401,7 +430,7 @@ export interface FitOptions extends FitSettings {
 export function fit(recordings: NamedBytes | NamedFile | (NamedBytes | NamedFile)[], options?: FitOptions): Promise<Fitted>;
 
 /**
- * Sets where the module is, and how its worker is started if a bundler has moved it. Call this
- * before the first use.
+ * Sets where the WASM module that makes textures comes from. If a bundler has moved its worker,
+ * `worker` starts the worker. Call this before the first use.
  */
 export function setAuthorLibrary(library: Address | Bytes | object | undefined, options?: { worker?: () => WorkerLike | Promise<WorkerLike> }): void;

@@ -1,4 +1,4 @@
-// Making textures: fit recordings, write parameters, mix and edit textures. A second module does
+// Make textures: fit recordings, write parameters, mix and edit textures. A second WASM module does
 // this. It also contains the player, and is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
@@ -28,7 +28,7 @@ function compiled() {
   return module;
 }
 
-/** The author in this thread. */
+/** Loads the author module into the calling thread. */
 export function loadAuthor() {
   author ??= Promise.all([compiled().then((compiledModule) => AuthorCore.make(compiledModule)), library()])
     .then(([own, player]) => new Author(own, player))
@@ -39,7 +39,10 @@ export function loadAuthor() {
   return author;
 }
 
-/** Returns all files that recordings and settings name, in order. */
+/**
+ * Returns all files that recordings and settings name: first the recordings, then the response,
+ * then the trackers.
+ */
 function filesOf(recordings, { response, tracker }) {
   const list = (one) => (one === undefined || one === null ? [] : Array.isArray(one) ? one : [one]);
   return { recordings: list(recordings), response: list(response), trackers: list(tracker) };
@@ -56,7 +59,7 @@ function callOf({ recordings, response, trackers }, { response: _, tracker: __, 
   return { request, files: [...recordings, ...response, ...trackers].map((file) => file.bytes) };
 }
 
-/** Converts a grid to the form that the command takes. */
+/** Converts a grid to lines, as the `htex` command expects them. */
 function linesOf(grid) {
   if (typeof grid === "string" || Array.isArray(grid)) return grid;
   const lines = Object.entries(grid).map(([axis, values]) => `${axis}=${values.join(",")}`);
@@ -104,14 +107,14 @@ export class Author {
     return this.texture(this.core.call("edit", { metadata }, [bytesOfTexture(texture)]).bytes);
   }
 
-  /** Checks a texture, a library or a recording. `name` tells what it is if its bytes do not. */
+  /** Checks a texture, a library or a recording. A recording is recognised by its `name`. */
   validate(bytes, { name } = {}) {
     return this.core.call("validate", { name }, [bytesOf(bytes)]).document;
   }
 
   /**
-   * Returns what a fingertip feels of the difference between a texture and a reference, each at a
-   * motion and by a model.
+   * Returns what a fingertip can feel of the difference between a reference and another texture.
+   * Each is played by a model at a motion.
    */
   felt(reference, other) {
     const sideOf = ({ model, at }) => ({ model, at });
@@ -120,8 +123,8 @@ export class Author {
   }
 
   /**
-   * Returns the magnitudes at which sinusoids of given frequencies, Hz, reach the detection
-   * threshold, in the quantity's unit.
+   * Returns the detection threshold: for each frequency in Hz, the magnitude, in the quantity's
+   * unit, at which a finger just feels a sinusoid.
    */
   threshold(frequencies, { quantity } = {}) {
     return Float64Array.from(this.core.call("threshold", { frequencies: Array.from(frequencies), quantity }).document);
@@ -132,7 +135,7 @@ export class Author {
     return this.core.call("explain", { code }).document ?? undefined;
   }
 
-  /** Returns how the columns of a recording are interpreted. */
+  /** Returns the columns of a recording, and how they are interpreted. */
   columns(recording, settings = {}) {
     const { request, files } = callOf(eachOf(filesOf(recording, settings), named), settings);
     return this.core.call("columns", request, files).document;
@@ -155,15 +158,18 @@ export class Author {
     return loopsOf(document, bytes);
   }
 
-  /** Bakes a block for players on microcontrollers. `c` and `rust` are its source code. */
+  /**
+   * Bakes a texture: computes a block of data for microcontrollers. `c` and `rust` have the block
+   * as source code.
+   */
   bake(texture, { name = "texture", model, rate, within, grid } = {}) {
     const { document, bytes } = this.core.call("bake", { name, model, rate, within, grid }, [bytesOfTexture(texture)]);
     return { ...document, bytes };
   }
 
   /**
-   * Returns licence and author of a texture: each one, both as SPDX lines (`text`), and as a chunk
-   * to append to a WAV file (`riff`).
+   * Returns the licence and the author of a texture. `text` has both as SPDX lines, and `riff` as a
+   * chunk to append to a WAV file.
    */
   rights(texture) {
     const { document, bytes } = this.core.call("rights", {}, [bytesOfTexture(texture)]);
@@ -178,8 +184,8 @@ export class Author {
   }
 
   /**
-   * Packs textures, by their names in the library, into a `.htexlib` file. Each must state a
-   * licence, unless `unlicensed` allows textures without one.
+   * Packs textures into a `.htexlib` file, under the names that are the keys of `textures`. Each
+   * texture must state a licence, unless `unlicensed` is true.
    */
   library(textures, { name = "", unlicensed = false } = {}) {
     const all = Object.entries(textures);
@@ -192,7 +198,7 @@ function bytesOfTexture(texture) {
   return bytesOf(texture?.bytes ?? texture);
 }
 
-/** The minimum and maximum of each signal in each step. */
+/** Returns the minimum and maximum of each signal in each time step. */
 function pictureOf({ signals, steps, ...picture }, bytes) {
   const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, 2 * steps * signals.length);
   const part = (i) => numbers.subarray(i * steps, (i + 1) * steps);

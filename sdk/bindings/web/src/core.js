@@ -1,8 +1,8 @@
-// The library of `sdk/bindings/capi`, compiled to WASM, with its C functions as methods. Structs have the
-// layout of 32-bit WASM.
+// The C library of `sdk/bindings/capi`, compiled to WASM, with methods that call its C functions.
+// Structs have the layout of 32-bit WASM.
 //
-// The C interface is called directly, without generated bindings: it keeps one interface and one
-// set of errors, and needs no text decoder, which audio worklets lack.
+// The C interface is called directly, without generated bindings. So there is only one interface
+// and one set of errors. It also needs no text decoder, which audio worklets lack.
 
 import { Guests, decode, encode } from "./guests.js";
 
@@ -45,7 +45,7 @@ const ENVELOPE = 32;
 const MOST_BANDS = 32;
 /** Size of htex_motion. */
 export const MOTION = 48;
-/** HTEX_ENGINE_CHECKED: the browser itself runs the modules that are passed in or allowed. */
+/** HTEX_ENGINE_CHECKED. The browser itself runs the modules that are passed in or allowed. */
 const ENGINE = 1;
 /** Bytes reserved for results at the start of each call. */
 const RESULTS = ENVELOPE + 8 * (MOST_BANDS + 1);
@@ -78,7 +78,10 @@ export class Core {
     return new Core(new WebAssembly.Instance(module, { htex: guests.imports() }), guests);
   }
 
-  /** Instantiates the compiled library. Without `runsModules` it refuses the modules of models. */
+  /**
+   * Instantiates the compiled library. It refuses models in WASM modules unless `runsModules` is
+   * true.
+   */
   static async make(module, { runsModules }) {
     const guests = new Guests({ runsModules });
     return new Core(await WebAssembly.instantiate(module, { htex: guests.imports() }), guests);
@@ -127,8 +130,8 @@ export class Core {
   }
 
   /**
-   * Returns what a voice played since the last call. The mean squares of its bands are written to a
-   * Float64Array.
+   * Returns the level and mean frequency of what a voice played since the last call. Writes the
+   * mean square in each band to a Float64Array.
    */
   envelope(id, bands) {
     const at = this.results;
@@ -245,7 +248,7 @@ export class Core {
     return at;
   }
 
-  /** Returns the text that a function writes. It first asks for the length. */
+  /** Returns the text that a function writes. First calls the function to get the text's length. */
   text(name, ...values) {
     this.call(name, ...values, 0, 0, this.results);
     const len = this.view().getUint32(this.results, true);

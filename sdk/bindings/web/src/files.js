@@ -1,4 +1,4 @@
-// Files from callers: their bytes and their names, which tell what they are.
+// Files that callers pass in: their bytes, and their names, whose extensions state the format.
 
 import { HtexError, toBytes } from "./core.js";
 

@@ -1,4 +1,5 @@
-// Voices of untrusted models, in a worker that is terminated if it does not return.
+// Renders voices of untrusted models in a worker. If a call does not return, the worker is
+// terminated.
 
 import { HtexError } from "./core.js";
 import { host } from "./host.js";
@@ -6,13 +7,14 @@ import { files, libraryBytes } from "./library.js";
 import { VOICE, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-/** Milliseconds between two checks whether the worker still returns. */
+/** Milliseconds between two checks that the worker still answers. */
 const ASKED_MS = 250;
 
 let keys = 0;
 
 /**
- * Everything that a worklet or a worker needs to make a voice. `rests`: the finger starts lifted.
+ * Returns everything that a worklet or a worker needs to make a voice. If `rests` is true, the
+ * finger is lifted at the start.
  */
 export function describe(texture, voice, rests = false) {
   texture.key ??= `texture ${(keys += 1)}`;
@@ -62,13 +64,16 @@ export class GuardedWorker {
     }
   }
 
-  /** Sends the library's bytes, in case the compiled library cannot be sent. */
+  /**
+   * Posts a message together with the library's bytes, for browsers that cannot send the compiled
+   * library.
+   */
   postWithBytes(message, transfer) {
     const send = (library) => this.worker.postMessage({ ...message, description: { ...message.description, library } }, transfer);
     libraryBytes().then(send).catch((error) => this.receive({ id: message.id, error }));
   }
 
-  /** Keeps a Node.js program running while it waits for a result. */
+  /** Keeps a Node.js program running while a request is pending. */
   hold() {
     const how = this.waiting.size > 0 ? "ref" : "unref";
     this.worker[how]?.();
@@ -99,8 +104,8 @@ export class GuardedWorker {
   }
 
   /**
-   * Sends a message and returns a promise of its result. `failed` is called with an error, also
-   * with later ones.
+   * Sends a message and returns a promise of its result. `failed` is called with every error, also
+   * with errors that come after the result.
    */
   request(message, transfer = [], failed = null) {
     if (this.ended) return Promise.reject(this.ended);
@@ -115,8 +120,7 @@ export class GuardedWorker {
   }
 
   /**
-   * Plays a voice through a port. `failed` is called with an error, also a later one, until
-   * `forget` is called.
+   * Plays a voice through a port. `failed` is called with every error, until `forget` is called.
    */
   play(description, port, failed) {
     const ready = this.request({ description, port }, [port], failed);

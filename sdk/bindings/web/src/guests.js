@@ -1,5 +1,6 @@
-// Runs the modules of models, which the core cannot run itself. A *guest* is a module that is
-// instantiated here. The core passes addresses in its own memory; handles are numbers above 0.
+// Runs models in WASM modules, which the WASM library (the core) cannot run itself. A *guest* is a
+// module that is instantiated here. The core passes addresses in its own memory. It refers to
+// guests by handles, which are numbers above 0.
 
 const I32 = 0;
 const I64 = 1;
@@ -15,8 +16,8 @@ export class Guests {
     this.last = 0;
     this.failure = new Uint8Array(0);
     /**
-     * The author module calls this with a call's progress: finished steps, total number, and what
-     * begins.
+     * The author module calls this function to report progress: the number of finished steps, the
+     * total number of steps, and a text that describes the step that begins.
      */
     this.onProgress = null;
   }
@@ -88,8 +89,8 @@ export class Guests {
       );
     }
     const returned = guest.functions[index](...values);
-    // The call could have grown the core's memory only if the guest could reach it, which it
-    // cannot.
+    // `view` is still valid: the guest cannot reach the core's memory, so the call cannot have
+    // grown it.
     if (returns === I32) view.setBigUint64(result >>> 0, BigInt(returned >>> 0), true);
     else if (returns === I64) view.setBigInt64(result >>> 0, BigInt(returned), true);
     else if (returns === F64) view.setFloat64(result >>> 0, Number(returned), true);
@@ -117,7 +118,7 @@ export class Guests {
   }
 }
 
-// UTF-8 conversion, because audio worklets have no functions for it.
+// The UTF-8 conversions are written here, because audio worklets have no functions for them.
 
 export function encode(text) {
   const bytes = [];

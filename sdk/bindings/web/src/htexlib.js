@@ -1,12 +1,12 @@
-// Libraries: files with thousands of textures. Only byte ranges are fetched, and the WASM library
-// says which.
+// Libraries: files with thousands of textures. Only the byte ranges that are needed are fetched.
+// The WASM code states which ranges it needs.
 
 import { HtexError } from "./core.js";
 import { addressOf, bytesOf, isBlob, library, open } from "./library.js";
 import { checked } from "./options.js";
 import { Handle } from "./texture.js";
 
-/** Number of index pages that are cached, at most 40 KiB each. */
+/** Number of index pages that are cached. Each has at most 40 KiB. */
 const KEPT_PAGES = 16;
 
 /** A file on a server, read with HTTP range requests. */
@@ -22,8 +22,8 @@ class Remote {
     const headers = { Range: `bytes=${start}-${end - 1}`, ...this.condition() };
     const response = await this.fetcher(this.url, { headers });
     if (response.status === 200) {
-      // If a server sends the whole file after it has sent ranges, the file is another version or
-      // the server changed its mind.
+      // The server sent ranges before and now sends the whole file. So it may be another version of
+      // the file.
       if (this.size !== undefined) throw this.changed();
       // A server without range support sends the whole file.
       this.whole = new Uint8Array(await response.arrayBuffer());
@@ -37,8 +37,9 @@ class Remote {
   }
 
   /**
-   * The header that requests a range of the known version only. Across origins it would require a
-   * permission request each time, so there the version is only compared afterwards.
+   * Returns the header that makes the server send a range only if the file still has the known
+   * version. For another origin, this header would need a preflight request each time. So in this
+   * case the version is only compared afterwards.
    */
   condition() {
     const page = globalThis.location?.origin;
@@ -50,7 +51,10 @@ class Remote {
     return new HtexError(`${this.url}: the file has changed; open it again`, "io");
   }
 
-  /** Records the length and version of the file. Neither may change afterwards. */
+  /**
+   * Stores the length and version of the file at the first response. Throws if a later response has
+   * others.
+   */
   check(response, start) {
     const [, first, size] = /^bytes (\d+)-\d+\/(\d+)$/.exec(response.headers.get("Content-Range") ?? "") ?? [];
     if (size === undefined || Number(first) !== start) {
@@ -89,13 +93,13 @@ class Chosen {
   }
 }
 
-/** Returns the file for a source. */
+/** Returns the object that reads a source in ranges. */
 async function fileOf(source, fetcher) {
   if (typeof source === "string" || source instanceof URL) return new Remote(addressOf(source, "Library.open"), fetcher);
   return isBlob(source) ? new Chosen(source) : new Local(await bytesOf(source, "Library.open"));
 }
 
-/** An opened library. */
+/** An open library: a file with thousands of textures. */
 export class Library extends Handle {
   /** Opens a library from its address, its bytes, a File or a Blob. */
   static async open(source, options = {}) {
@@ -156,7 +160,9 @@ export class Library extends Handle {
     core.scope((take) => core.call("htex_index_read_page", this.id, number, core.put(take, bytes), bytes.length));
   }
 
-  /** Returns the page that contains a texture, if any does. */
+  /**
+   * Returns the number of the only index page that can list a texture, or undefined if no page can.
+   */
   pageOf(name) {
     const { core } = this;
     return core.scope((take) => {
@@ -214,7 +220,7 @@ export class Library extends Handle {
     });
   }
 
-  /** Returns the ranges of a texture in the selected page. */
+  /** Returns the byte ranges in the file of a texture that the selected page lists. */
   ranges(name) {
     const { core } = this;
     return core.scope((take) => {

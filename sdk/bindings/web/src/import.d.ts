@@ -1,5 +1,5 @@
 /**
- * Importing files of other haptic formats as textures: Apple .ahap, Meta .haptic, MPEG .hjif, Penn
+ * Import files of other haptic formats as textures: Apple .ahap, Meta .haptic, MPEG .hjif, Penn
  * HaTT .xml, friction maps .png, glTF.
  */
 
@@ -7,11 +7,11 @@ import type { FitReport, Metadata, NamedBytes, NamedFile, Notice, RecordedQuanti
 import type { Address, Bytes, Texture } from "./index.js";
 import type { SignalLike, WorkerLike } from "./web.js";
 
-/** Something that a file does not state. */
+/** Something that a file does not state, so that the user must state it. */
 export interface Asked {
-  /** The setting that states it. */
+  /** Name of the setting that states it. */
   setting: "full_scale" | "speed_mm_s" | "force_n" | "pitch_mm";
-  /** Its description: "at which speed it is felt". */
+  /** Description for the user, such as "at which speed it is felt". */
   words: string;
 }
 
@@ -20,25 +20,29 @@ export interface ImportFormat {
   /** "hatt", "haptic", "ahap", "hjif", "png", "gltf" and others. */
   name: string;
   title: string;
-  /** Extensions of its files, without the dot. */
+  /** Extensions of the format's files, without the dot. */
   extensions: string[];
-  /** Whether models are fitted to its files. Other formats become textures as they are. */
+  /**
+   * Whether models are fitted to the format's files. Files of other formats become textures without
+   * a fit.
+   */
   fitted: boolean;
-  /** Settings of `importFile` that it accepts, apart from metadata. */
+  /** Settings of `importFile` that the format accepts, apart from metadata. */
   settings: string[];
   /**
-   * What its files do not state. `Importer.asks` answers this for one file, which may state more.
+   * What the format's files do not state. A particular file may state more: `Importer.asks` returns
+   * what it lacks.
    */
   asks: Asked[];
   /**
-   * Default actuator for formats that give frequencies as positions in an actuator's range; null if
-   * frequencies are in Hz.
+   * Default actuator, if the format gives frequencies as positions in an actuator's range; null if
+   * it gives frequencies in Hz.
    */
   profile: string | null;
-  /** Which parts of a texture the format keeps, and which it loses, in words. */
+  /** Which parts of a texture the format keeps, and which parts it loses, in words. */
   keeps: string;
   loses: string;
-  /** Where its files state licence and author. */
+  /** Where the format's files state licence and author, in words. */
   rights: string;
 }
 
@@ -51,36 +55,43 @@ export interface ActuatorRange {
 }
 
 /**
- * What a file does not state, how it is fitted, and the texture's metadata. The names are the
- * keywords of the Python package. A setting that the format does not use is refused.
+ * What a file does not state, how models are fitted to it, and the texture's metadata. The settings
+ * have the same names as the keywords in the Python package. A setting that the format does not use
+ * is an error.
  */
 export interface ImportSettings extends Metadata {
-  /** The value of the file's 1, or of white, in the quantity's unit. */
+  /**
+   * The value, in the quantity's unit, for which 1 stands in the file; in an image, the value of
+   * white.
+   */
   full_scale?: number;
-  /** The quantity of `full_scale`. Default "lateral_force". */
+  /** The quantity of the texture and of `full_scale`. Default "lateral_force". */
   quantity?: RecordedQuantity;
-  /** Speed (mm/s) and normal force (N) of the finger at which the file is felt. */
+  /** Speed (mm/s) and normal force (N) of the finger for which the file is meant. */
   speed_mm_s?: number;
   force_n?: number;
-  /** Distance between an image's pixels, mm. Default: the distance that the file states. */
+  /** Distance between the pixels of an image, mm. Default: the distance that the file states. */
   pitch_mm?: number;
-  /** The actuator in whose range frequencies are positions. Default: the format's own. */
+  /**
+   * The actuator, if the format gives frequencies as positions in an actuator's range. Default: the
+   * format's own.
+   */
   profile?: string;
-  /** Models by short name or id. Default: all. */
+  /** Short names or ids of the models to fit. Default: all. */
   models?: string | string[];
-  /** Options of models: `{ ar: { order: 6 } }`. */
+  /** Options of each model, such as `{ ar: { order: 6 } }`. */
   options?: Record<string, Record<string, number | string>>;
   level?: "fitted" | "recording";
-  /** Keep the spectrum of the signal in the texture. */
+  /** Store the spectrum of the signal in the texture. */
   keep_reference?: boolean;
 }
 
 export interface ImportReport {
   /** Name of the format. */
   format: string;
-  /** If no model was fitted to the file, its difference is not felt. */
+  /** The models of the texture. `felt` is null if no model was fitted to the file. */
   models: Omit<FitReport["models"][number], "fit_ms">[];
-  /** Ids of the models, starting with the one whose difference is felt least. */
+  /** Ids of the models. The model whose difference from the signal is felt least comes first. */
   ranked: string[];
   conditions: Record<string, unknown>[];
   warnings: Notice[];
@@ -92,36 +103,39 @@ export interface Imported {
   report: ImportReport;
 }
 
-/** Reads files of other formats, in the calling thread. */
+/** Imports files of other formats. All calls run in the calling thread. */
 export interface Importer {
   formats(): { formats: ImportFormat[]; profiles: ActuatorRange[] };
   /**
-   * Returns what a file does not state, so that `importFile` needs it as a setting; empty for a
-   * file that states a complete texture.
+   * Returns what a file does not state. `importFile` needs each of these as a setting. The list is
+   * empty if the file states a complete texture.
    */
   asks(file: NamedBytes): Asked[];
-  /** Imports a file. The function `importFile` does this in a worker. */
+  /** Imports a file. The global function `importFile` does this in a worker. */
   importFile(file: NamedBytes, settings?: ImportSettings): Imported;
 }
 
-/** Loads the module. */
+/** Loads the WASM module that imports files. */
 export function loadImporter(): Promise<Importer>;
 
 export interface ImportOptions extends ImportSettings {
   /**
-   * Called with the number of finished steps, the total number, and what begins: "import
-   * buzz.ahap".
+   * Called when a step begins: with the number of finished steps, the total number of steps, and a
+   * text that describes the step, such as "import buzz.ahap".
    */
   onProgress?: (progress: { done: number; of: number; text: string }) => void;
-  /** Aborts the import, which then fails with an HtexError with the code "aborted". */
+  /** Aborts the import, which then fails with an HtexError whose code is "aborted". */
   signal?: SignalLike;
 }
 
-/** Imports a file in a worker. Errors have the code "invalid-file" where the file is not what its format says, and "invalid-argument". */
+/**
+ * Imports a file in a worker. Fails with an HtexError. Its code is "invalid-file" if the file is
+ * not valid in its format, and "invalid-argument" if a setting is missing or invalid.
+ */
 export function importFile(file: NamedBytes | NamedFile, options?: ImportOptions): Promise<Imported>;
 
 /**
- * Sets where the module is, and how the worker is started if a bundler has moved it. Call this
- * before the first use.
+ * Sets where the WASM module that imports files comes from. If a bundler has moved its worker,
+ * `worker` starts the worker. Call this before the first use.
  */
 export function setImportLibrary(library: Address | Bytes | object | undefined, options?: { worker?: () => WorkerLike | Promise<WorkerLike> }): void;

@@ -1,4 +1,4 @@
-// Importing files of other haptic formats as textures. A separate module reads them. It also
+// Import files of other haptic formats as textures. A separate WASM module reads them. It also
 // contains the author module, and is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
@@ -28,7 +28,7 @@ function compiled() {
   return module;
 }
 
-/** The importer in this thread. */
+/** Loads the import module into the calling thread. */
 export function loadImporter() {
   importer ??= Promise.all([compiled().then((compiledModule) => AuthorCore.make(compiledModule)), library()])
     .then(([own, player]) => new Importer(own, player))
@@ -39,7 +39,7 @@ export function loadImporter() {
   return importer;
 }
 
-/** A call of the module. */
+/** Returns the arguments for a call of the module. */
 function callOf({ name, bytes }, { models, ...settings }) {
   if (models !== undefined) settings.models = [models].flat();
   return { request: { file: name, settings }, files: [bytes] };
@@ -53,14 +53,14 @@ export class Importer {
   }
 
   /**
-   * Returns the formats that can be imported, and the actuators in whose ranges frequencies may be
-   * positions.
+   * Returns the formats that can be imported, and the actuators. Some formats give frequencies as
+   * positions in an actuator's range.
    */
   formats() {
     return this.core.call("formats", {}).document;
   }
 
-  /** Returns what a file does not state, so that `importFile` needs it as a setting. */
+  /** Returns what a file does not state. `importFile` needs each of these as a setting. */
   asks(file) {
     const { name, bytes } = named(file);
     return this.core.call("asks", { file: name }, [bytes]).document;

@@ -1,4 +1,4 @@
-/** Touch textures in the browser and in Node.js. */
+/** Textures of touch in the browser and in Node.js: open, play and make them. */
 
 /// <reference lib="esnext.disposable" />
 
@@ -10,7 +10,7 @@ import type { AudioContextLike, AudioParamLike, ElementLike, EventLike, Fetch } 
 
 export type { Contact, Exponent, Law, Manifest, ManifestCondition, Quantity, Representation } from "./manifest.js";
 
-/** Bytes. */
+/** Bytes in memory: an ArrayBuffer, or a view of one. */
 export type Bytes = ArrayBuffer | ArrayBufferView;
 
 /** An address: a string or a URL. */
@@ -38,10 +38,10 @@ export interface Motion {
   speed?: number;
   /** Normal force, N; finite and not negative. Default 0. */
   force?: number;
-  /** Position along the path, mm, for models that follow it. */
+  /** Position along the finger's path, mm. Only models that follow the position use it. */
   position?: number;
   /**
-   * Place on the surface, mm, for models that are maps of the surface. Give both coordinates or
+   * Place on the surface, mm. Only models that map a surface use it. Give both coordinates or
    * neither.
    */
   x?: number;
@@ -49,48 +49,55 @@ export interface Motion {
 }
 
 export interface OpenOptions {
-  /** WASM modules of models. They take precedence over the built-in ones. */
+  /** Models as WASM modules. A module takes precedence over a built-in model with the same id. */
   modules?: Bytes[];
-  /** Whether models embedded in the asset may run, in a sandbox. Default true. */
+  /** Whether WASM modules that are embedded in the asset may run, in a sandbox. Default true. */
   embedded?: boolean;
   /**
-   * Whether modules may run in the calling thread and in the audio thread, where nothing can stop a
-   * call that does not return. Default false: they play in a worker, through `HtexNode` and
-   * `GuardedWorker`.
+   * Whether WASM modules may run in the calling thread and in the audio thread. There, nothing can
+   * stop a call that does not return. Default false: modules run only in a worker, which `HtexNode`
+   * and `GuardedWorker` use.
    */
   trusted?: boolean;
 }
 
 export interface VoiceOptions {
   /**
-   * The model of the representation, by its id or short name. Default: the representation with the
+   * Id or short name of the model whose representation plays. Default: the representation with the
    * smallest error.
    */
   model?: string;
   /** Sample rate, Hz. Default 20000. */
   rate?: number;
-  /** Seed of the noise: equal seeds give equal samples. Default 0. */
+  /**
+   * Seed of the noise. Voices with equal seeds, options and motions give equal samples. Default 0.
+   */
   seed?: number | bigint;
   /**
-   * Motion at the start. Default: the first recorded condition, or the strongest if the first is
-   * silent.
+   * Motion at the start. Default: the first recorded condition, or the strongest one if the first
+   * is silent.
    */
   motion?: Motion;
-  /** How samples are made. Default "streamed". */
+  /**
+   * How samples are made. "streamed": the model computes each sample. "loop:SECONDS": a sound of
+   * this length is computed once and repeated. "filter:TAPS": noise goes through a filter with this
+   * number of taps. Default "streamed".
+   */
   synthesis?: "streamed" | `loop:${number}` | `filter:${number}`;
-  /** Whether frequencies follow speeds beyond the recorded ones. Default true. */
+  /** Whether frequencies keep changing at speeds outside the recorded range. Default true. */
   frequencyScaling?: boolean;
-  /** Whether the level follows forces beyond the recorded ones. Default true. */
+  /** Whether the level keeps changing at forces outside the recorded range. Default true. */
   levelScaling?: boolean;
-  /** Whether a finger at rest is silent. Default true. */
+  /** Whether the voice is silent while the finger is at rest. Default true. */
   contact?: boolean;
   /**
-   * Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
-   * recorded level: above 0 and finite. Default 4.
+   * Highest level that the voice reaches at motions outside the recorded conditions, as a multiple
+   * of the strongest recorded level. Positive and finite. Default 4.
    */
   ceiling?: number;
   /**
-   * Gain of the samples. Default 1. Not available for an `HtexNode`, whose `gain` is an AudioParam.
+   * Gain of the samples. Default 1. An `HtexNode` does not use this option: its `gain` is an
+   * AudioParam.
    */
   gain?: number;
   /**
@@ -98,39 +105,42 @@ export interface VoiceOptions {
    * would exceed it. Default: no limit.
    */
   limit?: number;
-  /** Number of bands in `Voice.envelope`, 1 to 32. Default 0: no envelope, which costs no time. */
+  /**
+   * Number of bands that `Voice.envelope` returns, 1 to 32. Default 0: no envelope, which saves its
+   * computing time.
+   */
   bands?: number;
 }
 
 /** Samples that a node plays in a loop, such as the result of `author.recorded`. */
 export interface Loop {
-  /** In the unit of the recorded quantity. */
+  /** The samples, in the unit of the recorded quantity. */
   readonly samples: Float32Array;
   readonly rate_hz: number;
-  /** RMS of the samples. The default gain is set by it. */
+  /** RMS of the samples. It determines the node's default gain. */
   readonly level_rms: number;
 }
 
 /**
- * What a voice played since the last call, for phones, pads and motors that are driven by level and
- * frequency.
+ * Level and mean frequency of what a voice played since the last call, for phones, gamepads and
+ * motors that receive a level and a frequency instead of samples.
  */
 export interface Envelope {
   /** Exact RMS of the samples, in the texture's unit; 0 if there are none. */
   level: number;
   /**
-   * Mean frequency, weighted by power, Hz; 0 for silence. It is computed from windows that lag by
-   * some 20 ms.
+   * Mean frequency of the spectrum, weighted by power, Hz; 0 for silence. It is computed from time
+   * windows, so it is late by some 20 ms.
    */
   centroid: number;
-  /** Number of samples. */
+  /** Number of samples since the last call. */
   frames: number;
-  /** Mean square in each band, computed from the same windows. */
+  /** Mean square of the samples in each band, computed from the same windows. */
   bands: Float64Array;
 }
 
 export interface At {
-  /** The model of the representation. Default: the representation with the smallest error. */
+  /** Id or short name of the model to use. Default: the representation with the smallest error. */
   model?: string;
   /**
    * The motion. The spectrum is interpolated between conditions. Default: the first recorded
@@ -139,12 +149,11 @@ export interface At {
   at?: Motion;
 }
 
-/** A texture asset. */
+/** A texture: an open asset (a .htex file). */
 export class Texture {
   private constructor();
   /**
-   * The manifest: name, conditions, representations, qualities and everything else that the asset
-   * states.
+   * The asset's whole manifest: name, conditions, representations, measured errors and so on.
    */
   readonly manifest: Manifest;
   readonly name: string;
@@ -155,42 +164,47 @@ export class Texture {
   /** What slid over the surface. */
   readonly contact: Contact;
   /**
-   * How frequencies and level follow a motion outside the recorded ones: as the asset states, or as
-   * assumed for its quantity and contact.
+   * How frequencies and level change with speed and force outside the recorded conditions. If the
+   * asset does not state this law, it is the usual one for its quantity and contact.
    */
   readonly law: Law;
-  /** Lowest and highest frequency of the spectra, Hz. */
+  /** Lowest and highest frequency of the asset's spectra, Hz. */
   readonly band: [number, number];
   /** The recorded conditions; NaN where a speed or force is unknown. */
   readonly conditions: { speed: number; force: number }[];
   /** Ids of the models of the representations. */
   readonly models: string[];
-  /** Whether models in modules may run. */
+  /**
+   * Whether models may run as WASM modules: modules that were passed to `open`, or embedded ones.
+   */
   readonly hasModules: boolean;
   /**
-   * Index of the condition at which a representation is played when no motion is given: its first,
-   * or its strongest if the first is silent. The default representation is the one with the
-   * smallest error. Loads no model.
+   * Index of the condition at which a representation plays if no motion is given: the first one, or
+   * the strongest one if the first is silent. Default `model`: the representation with the smallest
+   * error. Loads no model.
    */
   defaultCondition(model?: string): number;
-  /** Magnitudes of the texture's spectrum, in its unit, at frequencies in Hz. */
+  /**
+   * Spectrum that a recording of the voice would show: one magnitude, in the texture's unit, for
+   * each frequency in Hz.
+   */
   spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
   /**
-   * Magnitudes at a recorded condition (default: the default condition), as a recording of the
-   * voice would show them, but without random variation. For sums of sinusoids they are computed
-   * from 20 s of samples.
+   * Spectrum that a recording of the voice would show at a recorded condition, but without random
+   * variation. Default `condition`: the result of `defaultCondition`. If the model plays sinusoids,
+   * the spectrum is computed from 20 s of samples.
    */
   readSpectrum(options?: { model?: string; condition?: number }): { frequencies: Float64Array; magnitudes: Float64Array };
-  /** Level of a representation: RMS in the texture's unit. */
+  /** Level at which a representation plays: RMS in the texture's unit. */
   level(options?: At): number;
   /** Parameters of a representation at a motion, by name. */
   parameters(options?: At): Record<string, number | number[]>;
   /**
-   * Makes a voice, which runs in this thread. If its model is a module, the texture must have been
-   * opened as `trusted`.
+   * Makes a voice, which runs in the calling thread. If its model is a WASM module, the texture
+   * must have been opened with `trusted: true`.
    */
   voice(options?: VoiceOptions): Voice;
-  /** The bytes of the file. */
+  /** Returns the bytes of the texture's file. */
   toBytes(): Uint8Array<ArrayBuffer>;
   /** Frees the memory of the texture. Its voices continue to play. */
   free(): void;
@@ -200,26 +214,34 @@ export class Texture {
 /** How a speed or force relates to the recorded values. */
 export interface Reach {
   /**
-   * "followed": the model follows it by itself. "outside": the texture follows its law from the
-   * nearest recorded value.
+   * "inside": within the recorded range. "unknown": the asset does not state the recorded values.
+   * "followed": the model itself follows the speed or force. "outside": the texture plays as at the
+   * nearest recorded value, changed by its law.
    */
   kind: "inside" | "unknown" | "followed" | "outside";
-  /** The requested value and the nearest recorded one, for "outside". */
+  /** Only for "outside": the requested value, and the nearest recorded value. */
   asked?: number;
   recorded?: number;
 }
 
 /** How a motion relates to the recorded conditions, and how a voice plays it. */
 export interface Coverage {
-  /** "silent": the finger does not slide. "inside": as recorded, or interpolated. */
+  /**
+   * "silent": the finger does not slide. "inside": the texture plays as recorded, or interpolated
+   * between recorded conditions. "followed": the model itself follows the motion. "outside": the
+   * motion lies outside the recorded conditions.
+   */
   kind: "silent" | "inside" | "followed" | "outside";
-  /** One sentence in English; empty if nothing differs from the recording. */
+  /**
+   * One English sentence that states how playback differs from the recording; empty if it does not
+   * differ.
+   */
   text: string;
   inside: boolean;
   slides: boolean;
-  /** Relative difference between the motion and the one that is actually played. */
+  /** Relative difference between the requested motion and the motion that is actually played. */
   excess: number;
-  /** Factors that multiply all frequencies, and the level. */
+  /** Factors that multiply all frequencies (`frequencyFactor`) and the level (`levelFactor`). */
   frequencyFactor: number;
   levelFactor: number;
   /** Speed, mm/s, and normal force, N. */
@@ -227,19 +249,22 @@ export interface Coverage {
   force: Reach;
 }
 
-/** A voice: a texture that plays. */
+/** A voice: a texture that is playing. */
 export class Voice {
   private constructor();
   /**
-   * Sets the motion: mm/s, N, mm along the path, and the place in mm. Spectrum and level change
-   * gradually.
+   * Sets the motion: speed (mm/s), force (N), position along the path (mm), and place (mm).
+   * Spectrum and level change gradually to the new motion.
    */
   setMotion(speed: number, force: number, position?: number, x?: number, y?: number): void;
-  /** Renders the next samples, in the texture's unit. They do not depend on the block lengths. */
+  /**
+   * Renders the next `frames` samples, in the texture's unit. Rendering in shorter or longer blocks
+   * gives the same samples.
+   */
   render(frames: number): Float32Array;
-  /** The same, into an existing array and without allocating. */
+  /** Renders the next samples into an existing array. Does not allocate. */
   render(out: Float32Array): Float32Array;
-  /** Renders a block of `frames` samples at each motion. */
+  /** Renders a block of `frames` samples at each of the motions. */
   renderPath(
     speeds: ArrayLike<number>,
     forces: ArrayLike<number>,
@@ -252,28 +277,29 @@ export class Voice {
   readonly model: string;
   /** Whether the voice is silent: its samples are 0 until the finger slides again. */
   readonly isSilent: boolean;
-  /** Sets the gain. The change takes 10 ms. */
+  /** Sets the gain. The voice reaches the new gain within 10 ms. */
   setGain(gain: number): void;
-  /** Restarts the voice as it was when it was made. */
+  /** Restarts the voice. It then gives the same samples as a new voice with the same options. */
   reset(): void;
   /**
-   * Returns what was rendered since the last call. The bands are written to the array, if one is
-   * given.
+   * Returns the level and mean frequency of what was rendered since the last call. If `bands` is
+   * given, the mean square in each band is written to it.
    */
   envelope(bands?: Float64Array): Envelope;
   /**
-   * Edges of the bands, Hz: one more than there are bands, spaced by equal ratios. The first band
-   * also includes everything down to 0 Hz, and the last everything up to half the sample rate.
+   * Edges of the bands, Hz. There is one edge more than bands, and they are spaced by equal ratios.
+   * The first band also includes everything below, down to 0 Hz. The last band also includes
+   * everything above, up to half the sample rate.
    */
   readonly envelopeEdges: Float64Array;
   /**
-   * Returns how the voice plays a motion, or its current motion, and whether the motion lies within
-   * the recorded conditions.
+   * Returns how the voice plays a motion, and whether the motion lies within the recorded
+   * conditions. Default: the voice's current motion.
    */
   coverage(motion?: Motion): Coverage;
   /**
-   * Returns the magnitudes that a recording of the voice would show at its current motion, in the
-   * texture's unit, at frequencies in Hz. They include the gain.
+   * Returns the spectrum that a recording of the voice would show at its current motion: one
+   * magnitude, in the texture's unit, for each frequency in Hz. The magnitudes include the gain.
    */
   spectrum(frequencies: ArrayLike<number>): Float64Array;
   /** Frees the memory of the voice. */
@@ -284,7 +310,7 @@ export class Voice {
 /** Opens a texture from its bytes, a File, a Blob, a Response, or its address. */
 export function open(source: Bytes | Readable | Address, options?: OpenOptions): Promise<Texture>;
 
-/** The minimum and maximum of some numbers. */
+/** A range of values: minimum and maximum. */
 export interface Interval {
   min: number;
   max: number;
@@ -292,7 +318,7 @@ export interface Interval {
 
 /** What a library states about a texture. */
 export interface LibraryEntry {
-  /** Name in the library, with `/` between its parts. */
+  /** Name in the library. `/` separates the parts of a name. */
   name: string;
   tags: string[];
   /** Recorded speeds, mm/s, and forces, N; absent if unknown. */
@@ -300,39 +326,41 @@ export interface LibraryEntry {
   /** What slid over the surface. */
   contact: "finger" | "tool" | "unknown";
   /**
-   * Exponents of the law by which frequencies and level follow a motion outside the recorded ones.
+   * The law: exponents that state how frequencies and level change with speed and force outside the
+   * recorded conditions.
    */
   law: Law;
   /** Ids of the models of the representations. */
   models: string[];
-  /** Size of the texture, bytes. */
+  /** Size of the texture's file, bytes. */
   bytes: number;
-  /** BLAKE3 hash of the texture, hexadecimal. */
+  /** BLAKE3 hash of the texture's file, hexadecimal. */
   blake3: string;
 }
 
-/** Conditions that a texture must meet to be found. Absent conditions are ignored. */
+/** Criteria that a texture must meet to be found. Absent criteria are ignored. */
 export interface LibraryQuery {
-  /** Parts of the name or of a tag, ignoring case. All must match. */
+  /** Words to find in the name or in a tag, ignoring case. All words must match. */
   words?: string[];
-  /** Tags, ignoring case. All must match. */
+  /** Tags that the texture must have, ignoring case. */
   tags?: string[];
-  /** A speed, mm/s, and a force, N, within the recorded range. */
+  /** A speed (mm/s) and a force (N) that must lie within the recorded range. */
   speed?: number;
   force?: number;
-  /** A model, by its id or short name. */
+  /** Id or short name of a model that the texture must have. */
   model?: string;
 }
 
 /**
- * A library: one `.htexlib` file with thousands of textures. Only the necessary byte ranges are
- * fetched.
+ * A library: one `.htexlib` file with thousands of textures. Only the byte ranges that are needed
+ * are fetched.
  */
 export class Library {
   private constructor();
   /**
-   * Opens a library from its address, its bytes, or a File or Blob of which ranges are read.
-   * `fetch` is called for ranges, for example to add headers.
+   * Opens a library from its address, its bytes, or a File or Blob. From an address, File or Blob,
+   * only the ranges that are needed are read. `fetch` replaces the global function, for example to
+   * add headers to the requests for ranges.
    */
   static open(source: Bytes | Readable | Address, options?: { fetch?: Fetch }): Promise<Library>;
   /** Name of the library; may be empty. */
@@ -353,7 +381,10 @@ export class Library {
    * if there is no texture with this name.
    */
   bytes(name: string): Promise<Uint8Array>;
-  /** Opens a texture: with two requests, or one if the page of the index is already known. */
+  /**
+   * Opens a texture. This makes two requests, or one if the page of the index with the texture is
+   * already known.
+   */
   texture(name: string, options?: OpenOptions): Promise<Texture>;
   /** Frees the memory of the library. Its textures stay open. */
   free(): void;
@@ -361,50 +392,58 @@ export class Library {
 }
 
 /**
- * Sets the library: the address of `htex.wasm`, its bytes, or the compiled module (a
- * `WebAssembly.Module`). Pages that keep their files elsewhere also set the addresses of
+ * Sets where the WASM library comes from: the address of `htex.wasm`, its bytes, or the compiled
+ * module (a `WebAssembly.Module`). If a page keeps its files elsewhere, also set the addresses of
  * `processor.js` and `worker.js`. Call this before the first `open`.
  */
 export function setLibrary(library: Address | Bytes | object | undefined, addresses?: { processor?: Address; worker?: Address }): void;
 
 /**
- * Prepares an audio context for nodes. Await it before `new HtexNode`. Needs https or localhost.
+ * Prepares an audio context for nodes. Await this before `new HtexNode`. The page must come from
+ * https or localhost.
  */
 export function prepare(context: AudioContextLike): Promise<void>;
 
 export interface LoadOptions extends Omit<VoiceOptions, "rate"> {
   /**
-   * Whether models in modules may run in the audio thread, where a call that does not return stops
-   * all sound. Default: only the modules of textures that were opened as trusted. Others play in a
-   * worker, 32 ms later.
+   * Whether models in WASM modules may run in the audio thread. There, a call that does not return
+   * stops all sound. Default: only if the texture was opened with `trusted: true`. Otherwise the
+   * modules run in a worker, and their samples come 32 ms later.
    */
   trusted?: boolean;
   /**
-   * Factor that converts the texture's unit to full scale. Default: the factor that gives an RMS of
-   * 0.1 (-20 dB) at the default condition. `load` keeps the current ratio to that default.
+   * Factor that converts samples in the texture's unit to fractions of full scale. Default: the
+   * factor that gives an RMS of 0.1 (-20 dB) at the default condition. If you changed the gain,
+   * `load` keeps the ratio between your gain and the default.
    */
   gain?: number;
-  /** Number of bands in the envelopes passed to `onenvelope`, 1 to 32. Default 0: none. */
+  /**
+   * Number of bands in the envelopes that are passed to `onenvelope`, 1 to 32. Default 0: no
+   * envelopes.
+   */
   bands?: number;
 }
 
 export interface NodeOptions extends LoadOptions {
-  /** Motion at the start. Default: at rest, silent until `speed` and `force` are set. */
+  /**
+   * Motion at the start. Default: the finger is at rest, and the node is silent until `speed` and
+   * `force` are set.
+   */
   motion?: Motion;
   /** A worker that several nodes share. */
   worker?: GuardedWorker;
-  /** Longest call of a module in the worker, ms. Default 2000. */
+  /** Longest allowed call of a WASM module in the worker, ms. Default 2000. */
   limit?: number;
   /**
-   * Factor that multiplies all frequencies, above 0, for loudspeakers that cannot play low
-   * frequencies. Default 1: as a finger feels them.
+   * Factor that multiplies all frequencies, for loudspeakers that cannot play low frequencies. Must
+   * be positive. Default 1: the frequencies that a finger feels.
    */
   pitch?: number;
 }
 
 /**
- * Plays a texture, with a fade at its start and its end. Fires an event `error`, whose property
- * `error` is an HtexError.
+ * An audio node that plays a texture. It fades in at the start and out at the end. If it fails, it
+ * fires an event `error`, whose property `error` is an HtexError.
  */
 export class HtexNode extends NodeBase {
   constructor(context: AudioContextLike, texture: Texture, options?: NodeOptions);
@@ -414,33 +453,40 @@ export class HtexNode extends NodeBase {
   readonly force: AudioParamLike;
   /** Factor that converts the texture's unit to full scale. */
   readonly gain: AudioParamLike;
-  /** Position along the path, mm, for models that follow it. */
+  /** Position along the finger's path, mm. Only models that follow the position use it. */
   set position(position: number);
-  /** Place on the surface, mm, for models that are maps, such as friction maps; null if unknown. */
+  /**
+   * Place on the surface, mm; null if unknown. Only models that map a surface use it, such as
+   * friction maps.
+   */
   set place(place: { x: number; y: number } | null);
   /**
-   * Fades to another texture within 20 ms. Resolves when the fade has begun. Of several
-   * simultaneous calls the last one counts.
+   * Fades to another texture within 20 ms. Resolves when the fade has begun. If several calls are
+   * made at the same time, only the last one takes effect.
    */
   load(texture: Texture, options?: LoadOptions): Promise<void>;
-  /** Fades to a recording. It plays unchanged, at any speed and force, while a finger slides. */
+  /**
+   * Fades to a recording. While the finger slides, the recording plays unchanged at any speed and
+   * force.
+   */
   load(loop: Loop, options?: { gain?: number }): Promise<void>;
-  /** Resolves when the voice has been made. */
+  /** Resolves when the node's voice has been made. */
   readonly ready: Promise<void>;
   /**
-   * Called with the error after which the node is silent, also for errors of the worklet itself.
+   * Called if the node fails, with the error. The node is silent afterwards. Errors of the audio
+   * worklet itself are also passed to it.
    */
   onerror: ((event: EventLike & { readonly error: HtexError }) => void) | null;
   /**
-   * Called about every 20 ms with what was played, in the texture's unit and before the gain, if
-   * the node has bands.
+   * Called about every 20 ms with the envelope of what was played, in the texture's unit and before
+   * the gain. It is called only if the node has `bands`.
    */
   onenvelope: ((envelope: Envelope) => void) | null;
-  /** Edges of the bands, Hz: one more than there are bands. */
+  /** Edges of the bands, Hz. There is one edge more than bands. */
   readonly envelopeEdges: Float64Array;
-  /** The error after which the node is silent. */
+  /** The error that made the node silent; absent if there was none. */
   readonly error?: HtexError;
-  /** Number of frames that a worker did not deliver in time. */
+  /** Number of samples that the worker did not deliver in time. */
   readonly missed: number;
   /** Fades out within 10 ms and frees the voice. The node cannot be used again. */
   stop(): void;
@@ -449,7 +495,7 @@ export class HtexNode extends NodeBase {
 
 /**
  * A worker that renders voices of untrusted models. It is terminated if a call takes too long. In
- * Node.js it is a thread, and does not keep the program running while it has nothing to do.
+ * Node.js the worker is a thread. While it has nothing to do, it does not keep the program running.
  */
 export class GuardedWorker {
   /** `limit`: longest allowed call, ms. Default 2000. */
@@ -461,16 +507,19 @@ export class GuardedWorker {
   [Symbol.dispose](): void;
 }
 
-/** The parts of a gamepad from `navigator.getGamepads()` that are used. */
+/** A gamepad from `navigator.getGamepads()`, reduced to the parts that are used here. */
 export interface PadLike {
   readonly vibrationActuator?: ActuatorLike | null;
 }
 
-/** The gamepad's haptics. */
+/** The vibration actuator of a gamepad. */
 export interface ActuatorLike {
   playEffect(type: "dual-rumble", effect: RumbleEffect): Promise<unknown>;
   reset?(): Promise<unknown>;
-  /** The extension that plays samples. Resolves to false if the gamepad does not support it. */
+  /**
+   * Plays samples. Only some browsers have this function. Resolves to false if the gamepad does not
+   * support it.
+   */
   playPCM?(sound: any): Promise<boolean>;
 }
 
@@ -486,65 +535,72 @@ export interface RumbleEffect {
 }
 
 /**
- * Returns the strengths of a gamepad's two motors for an envelope. Up to a mean frequency of 60 Hz
- * only the large motor runs, and from 420 Hz only the small one. `gain` is the strength for a level
- * of 1; a motor's strength is at most 1. Default 3, for levels of full scale. `duration` is the
- * duration of the effect, ms. Default 100.
+ * Converts an envelope to the strengths of a gamepad's two motors. Up to a mean frequency of 60 Hz,
+ * only the large motor runs. From 420 Hz, only the small motor runs. `gain` is the strength for a
+ * level of 1, and strengths are limited to 1. Default 3, for levels in fractions of full scale.
+ * `duration` is the duration of the effect, ms. Default 100.
  */
 export function dualRumble(envelope: { readonly level: number; readonly centroid: number }, options?: { gain?: number; duration?: number }): RumbleEffect;
 
 export interface PadOptions {
-  /** The model of the representation. Default: the representation with the smallest error. */
+  /** Id or short name of the model to use. Default: the representation with the smallest error. */
   model?: string;
   /** Seed of the noise. Default 0. */
   seed?: number | bigint;
-  /** Motion at the start. Default: at rest, until `setMotion`. */
+  /** Motion at the start. Default: the finger is at rest until `setMotion` is called. */
   motion?: Motion;
   /**
-   * Factor that converts the texture's unit to full scale. Default: the factor that gives an RMS of
-   * 0.1 at the default condition.
+   * Factor that converts samples in the texture's unit to fractions of full scale. Default: the
+   * factor that gives an RMS of 0.1 at the default condition.
    */
   gain?: number;
 }
 
 /** A texture that plays on a gamepad. */
 export interface PadPlayer {
-  /** What is played: samples, or two strengths every 50 ms. */
+  /**
+   * How the texture is played: as samples ("pcm"), or as the strengths of two motors every 50 ms
+   * ("dual-rumble").
+   */
   readonly way: "pcm" | "dual-rumble";
-  /** Sets the motion: mm/s, N, mm along the path, place in mm. Samples follow 0.25 s later, strengths 50 ms later. */
+  /**
+   * Sets the motion: speed (mm/s), force (N), position along the path (mm), and place (mm). Samples
+   * follow the motion up to 0.25 s later, strengths up to 50 ms later.
+   */
   setMotion(speed: number, force: number, position?: number, x?: number, y?: number): void;
   /** Stops the motors and frees the voice. */
   stop(): Promise<void>;
-  /** Resolves when it was stopped. Rejects with an HtexError if the gamepad fails. */
+  /** Resolves when the player was stopped. Rejects with an HtexError if the gamepad fails. */
   readonly ended: Promise<void>;
 }
 
 /**
- * Plays a texture on a gamepad until it is stopped. If the browser has `playPCM` and the gamepad
- * supports it, the samples are played (the browser may leave a gap between blocks of 0.25 s).
- * Otherwise the two motors play the level and the mean frequency.
+ * Plays a texture on a gamepad until `stop` is called. If the browser has `playPCM` and the gamepad
+ * supports it, the gamepad plays the samples. The browser may then leave a gap between blocks of
+ * 0.25 s. Otherwise the two motors play the level and the mean frequency.
  */
 export function playOnPad(pad: PadLike, texture: Texture, options?: PadOptions): PadPlayer;
 
 export interface PointerOptions {
-  /** Millimetres per CSS pixel. Default 25.4 / 96. */
+  /** Size of a CSS pixel, mm. Default 25.4 / 96. */
   mmPerPixel?: number;
   /**
-   * Force in N for a pressure, 0 to 1, that the device measures. Default 0.8 times the pressure.
+   * Converts a pressure that the device measures, 0 to 1, to a force in N. Default: 0.8 times the
+   * pressure.
    */
   force?: (pressure: number) => number;
   /**
-   * Force in N of a mouse, and of a device that reports only the pressures 0, 0.5 and 1. Default
+   * Force, N, for a mouse, and for a device that reports no pressures except 0, 0.5 and 1. Default
    * 0.4.
    */
   defaultForce?: number;
 }
 
 /**
- * Calls `moved` with the motion of a pointer over an element: one pointer at a time; of a mouse,
- * only while the primary button is pressed. Meanwhile the element has `touch-action: none`. A
- * `null` element, such as an unmatched `querySelector` returns, is an HtexError. Returns a function
- * that ends this.
+ * Calls `moved` with the motion of a pointer over an element. Only one pointer is followed at a
+ * time, and a mouse only while its primary button is pressed. While this lasts, the element has the
+ * style `touch-action: none`. Returns a function that stops following. Throws an HtexError if
+ * `element` is `null`, which `querySelector` returns if nothing matches.
  */
 export function followPointer(
   element: ElementLike | null,
@@ -552,6 +608,9 @@ export function followPointer(
   options?: PointerOptions,
 ): () => void;
 
-/** Lets a node follow a pointer over an element, and resumes its context on the first press. A `null` element, such as an
- * unmatched `querySelector` returns, is an HtexError. Returns a function that ends this. */
+/**
+ * Makes a node follow a pointer over an element, and resumes its audio context on the first press.
+ * Returns a function that stops following. Throws an HtexError if `element` is `null`, which
+ * `querySelector` returns if nothing matches.
+ */
 export function follow(element: ElementLike | null, node: HtexNode, options?: PointerOptions): () => void;

@@ -1,4 +1,4 @@
-// Touch textures in the browser and in Node.js.
+// Textures of touch in the browser and in Node.js.
 
 export { fit, loadAuthor, setAuthorLibrary } from "./author.js";
 export { HtexError } from "./core.js";

@@ -5,13 +5,16 @@ import { host } from "./host.js";
 import { OPEN, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-/** Where the library is, unless `setLibrary` changes it. */
+/** Returns where the library is. `setLibrary` replaces this function. */
 let source = () => new URL("./htex.wasm", import.meta.url);
-/** Where the files of the worklet and the worker are, if not next to this one. */
+/** Addresses of the worklet's file and the worker's file, if they are not next to this file. */
 export const files = { processor: undefined, worker: undefined };
 
 let module;
-/** The library in this thread: one instance that runs modules of models, and one that runs none. */
+/**
+ * The instances of the library in this thread: one that runs models in WASM modules, and one that
+ * does not.
+ */
 let cores = {};
 
 /**
@@ -51,8 +54,9 @@ function isBytes(data) {
 }
 
 /**
- * Returns the address that a caller passes in, or one in this package. Bundlers would treat
- * `new URL` with another base as one of their own files.
+ * Converts an address that a caller passes in, or an address in this package, to a URL. This is a
+ * function of its own because bundlers would treat a `new URL` with another base as one of their
+ * own files.
  */
 export function resolved(address) {
   return address instanceof URL ? address : new URL(address, globalThis.location?.href);
@@ -76,8 +80,9 @@ async function moduleBytes(library, what) {
 }
 
 /**
- * Compiles a module from its address or its bytes, or returns it if it is already compiled. It
- * compiles while the module arrives if the server states its type. `what` names it in errors.
+ * Compiles a module from its address or its bytes, or returns it if it is already compiled. If the
+ * server states the WASM content type, it compiles while the module is still downloading. `what`
+ * names the module in errors.
  */
 export async function compiledFrom(library, what) {
   if (library instanceof WebAssembly.Module) return library;
@@ -99,7 +104,7 @@ export function compiled() {
   return module;
 }
 
-/** Returns the library in this thread. Modules of models run in it only if `trusted`. */
+/** Returns the library in this thread. It runs models in WASM modules only if `trusted` is true. */
 export function library({ trusted = false } = {}) {
   cores[trusted] ??= compiled()
     .then(async (compiledModule) => Object.assign(await Core.make(compiledModule, { runsModules: trusted }), { module: compiledModule }))
@@ -143,8 +148,8 @@ export function isBlob(source) {
 }
 
 /**
- * Returns the address that a caller passes in. Node.js programs have no address that others are
- * relative to.
+ * Converts an address that a caller passes in to a URL. Relative addresses are errors in Node.js,
+ * which has no base address.
  */
 export function addressOf(source, call) {
   const base = globalThis.location?.href;

@@ -8,11 +8,14 @@ export function checkLoop({ samples, rate_hz: rate, level_rms: level }, call) {
   if (!isLoop) throw new HtexError(`${call}: a loop has samples (a Float32Array that is not empty), rate_hz (above 0) and level_rms, such as author.recorded returns`, "invalid-argument");
 }
 
-/** The loops of a node. Its worklet keeps the samples of the last one, because they are large. */
+/**
+ * The loops of a node. Samples are large, so the worklet keeps the samples of the last loop, and
+ * they are not sent again.
+ */
 export class Loops {
   /**
-   * Returns what the worklet needs to play a loop at a context's sample rate, `pitch` times as
-   * high.
+   * Returns what the worklet needs to play a loop at the sample rate of the context, with all
+   * frequencies multiplied by `pitch`.
    */
   describe({ samples, rate_hz: rate }, { contextRate, pitch = 1 }) {
     const step = (rate * pitch) / contextRate;

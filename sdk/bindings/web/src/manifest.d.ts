@@ -1,21 +1,22 @@
 /**
- * The manifest of a texture: everything that its file states. `spec/htex-1.md` explains each key.
+ * The manifest of a texture: everything that its file states except the parameters.
+ * `spec/htex-1.md` explains each key.
  */
 
 export type Quantity = string;
 export type Contact = "finger" | "tool" | "unknown";
 
-/** A speed and a force at which the texture was recorded. Absent values are unknown. */
+/** A speed and a force at which the texture was recorded. An absent value is unknown. */
 export interface ManifestCondition {
   speed_mm_s?: number;
   force_n?: number;
-  /** How much two recordings of this kind differ, dB. */
+  /** How much two such recordings differ, dB. */
   repeatability_rms_db?: number;
   /** Number of averaged segments; 0 for a computed condition. */
   segments?: number;
 }
 
-/** An exponent of a law, and its source. */
+/** An exponent of the law, and where it comes from. */
 export interface Exponent {
   exponent: number;
   source: "measured" | "given" | "assumed";
@@ -23,19 +24,21 @@ export interface Exponent {
   standard_error?: number;
 }
 
-/** How frequencies and level follow a motion outside the recorded ones. */
+/**
+ * The law: how frequencies and level change with speed and force outside the recorded conditions.
+ */
 export interface Law {
   frequency_speed: Exponent;
   level_speed: Exponent;
   level_force: Exponent;
 }
 
-/** The texture as one model describes it. */
+/** A representation: the texture as one model describes it. */
 export interface Representation {
   /** Id of the model. */
   model: string;
   model_version: string;
-  /** Level and quality at each condition at which it was fitted. */
+  /** Level and measured errors at each condition at which the model was fitted. */
   at: ({ condition: number; level_rms: number } & Record<string, unknown>)[];
   [key: string]: unknown;
 }

@@ -1,5 +1,5 @@
-// The spectrum of samples, computed as for a recording: segments of 0.2 s that overlap by half,
-// Hann windows, RMS over all segments.
+// Computes the spectrum of samples in the same way as for a recording: segments of 0.2 s that
+// overlap by half, Hann windows, RMS over all segments.
 
 /** Distance between the frequencies of a spectrum, Hz: one period per segment. */
 export const GRID_HZ = 5;

@@ -10,8 +10,9 @@ import { Texture } from "./texture.js";
 /** Default RMS at which a node plays, as a fraction of full scale: -20 dB. */
 const LEVEL = 0.1;
 /**
- * Milliseconds between two checks whether a stopped node is silent: its context no longer renders,
- * or it has rendered for so many seconds without a reported end.
+ * Milliseconds between two checks whether a stopped node is silent. It is silent if its context no
+ * longer renders, or if the context has rendered for this many seconds (the second constant)
+ * without a reported end.
  */
 const LOOK_MS = 200;
 const SILENT_S = 1;
@@ -28,8 +29,8 @@ function isLoop(given) {
 }
 
 /**
- * Returns the gain at which a texture or a loop plays at that level. It uses what the file states,
- * because no model runs here.
+ * Returns the gain at which a texture or a loop plays at the default level. It uses the level that
+ * the file states, because no model runs here.
  */
 export function usualGain(texture, model) {
   if (isLoop(texture)) return texture.level_rms > 0 ? LEVEL / texture.level_rms : 0;
@@ -40,7 +41,7 @@ export function usualGain(texture, model) {
   return level > 0 ? LEVEL / level : 0;
 }
 
-/** The loading of the worklet for each context, and how often it failed. */
+/** For each context, the promise that loads the worklet, and how often loading failed. */
 const loading = new WeakMap();
 const failures = new WeakMap();
 const prepared = new WeakSet();
@@ -61,7 +62,7 @@ export async function prepare(context) {
 async function load(context) {
   const url = new URL(resolved(files.processor ?? new URL("./processor.js", import.meta.url)).href);
   const failed = failures.get(context) ?? 0;
-  // A worklet remembers an address that failed.
+  // A context remembers an address that failed, so a retry needs another address.
   if (failed > 0 && url.protocol !== "data:") url.searchParams.set("retry", failed);
   const added = context.audioWorklet.addModule(url).catch((error) => {
     failures.set(context, failed + 1);
@@ -102,9 +103,9 @@ const Base = globalThis.AudioWorkletNode ?? class {
 };
 
 /**
- * Plays a texture: parameters `speed` (mm/s), `force` (N) and `gain`. Models in modules play in a
- * worker, which is terminated if a call takes too long; the node then falls silent and fires an
- * `error` event.
+ * An audio node that plays a texture. Its parameters are `speed` (mm/s), `force` (N) and `gain`.
+ * Models in WASM modules play in a worker. If a call takes too long, the worker is terminated, the
+ * node falls silent, and it fires an `error` event.
  */
 export class HtexNode extends Base {
   constructor(context, texture, options = {}) {
@@ -160,7 +161,10 @@ export class HtexNode extends Base {
     this.port.postMessage({ position });
   }
 
-  /** Place on the surface, mm, for models that are maps: `{ x, y }`; null if unknown. */
+  /**
+   * Place on the surface, mm, as `{ x, y }`; null if unknown. Only models that map a surface use
+   * it.
+   */
   set place(place) {
     this.port.postMessage({ place: place ? [place.x, place.y] : [NaN, NaN] });
   }
@@ -172,8 +176,8 @@ export class HtexNode extends Base {
   }
 
   /**
-   * Fades to another texture, or to a loop. Of several simultaneous calls the last one counts. The
-   * gain keeps its ratio to the default gain.
+   * Fades to another texture, or to a loop. If several calls are made at the same time, only the
+   * last one takes effect. The ratio of the gain to the default gain is kept.
    */
   async load(texture, options = {}) {
     if (isLoop(texture)) {
@@ -199,8 +203,8 @@ export class HtexNode extends Base {
       const gain = options.gain ?? (this.usual > 0 ? (usual * before) / this.usual : usual);
       await (isLoop(texture) ? this.changeToLoop(texture, gain) : this.changeTo(texture, options, gain));
       this.usual = usual;
-      // Until now the old texture played with the old gain. A gain that was set in the meantime is
-      // kept.
+      // Until now the old texture played with the old gain. If the gain was changed in the
+      // meantime, the new value is kept.
       if (this.gain.value === before) this.gain.value = gain;
     }
   }
@@ -226,7 +230,7 @@ export class HtexNode extends Base {
     return this.lastLoad;
   }
 
-  /** Makes a voice and fades to it. The promise resolves when it starts. */
+  /** Makes a voice and fades to it. The promise resolves when the fade starts. */
   async send(voice, { trusted }) {
     const { id, description, gain } = voice;
     let playing = null;
@@ -241,7 +245,7 @@ export class HtexNode extends Base {
     this.playing = playing;
   }
 
-  /** Posts a load message. The promise resolves when it starts. */
+  /** Posts a load message. The promise resolves when the fade starts. */
   async begun(id, post) {
     const started = new Promise((resolve, reject) => this.loads.set(id, { resolve, reject }));
     post();
@@ -276,7 +280,7 @@ export class HtexNode extends Base {
     libraryBytes().then(send).catch((error) => this.receive({ id: voice.id, error }));
   }
 
-  /** Returns this node's worker, or the one it shares. */
+  /** Returns this node's own worker, or the worker that it shares with other nodes. */
   guarded() {
     if (this.worker && !this.worker.ended) return this.worker;
     this.worker = this.sharedWorker ?? new GuardedWorker({ limit: this.limit });
@@ -309,7 +313,10 @@ export class HtexNode extends Base {
     this.failed(error);
   }
 
-  /** Chromium's own event has the type `error`, like the events of this node. */
+  /**
+   * Handles an error of the worklet. Chromium's event for it also has the type `error`, like the
+   * events of this node.
+   */
   workletFailed(event) {
     if (event.error instanceof HtexError) return;
     event.stopImmediatePropagation();
@@ -335,8 +342,8 @@ export class HtexNode extends Base {
   }
 
   /**
-   * Ends the node if the worklet does not report that it has faded out. A late audio thread fades
-   * late; its fade is not cut off.
+   * Ends the node if the worklet does not report that it has faded out. If the audio thread is
+   * late, this waits, so that the fade is not cut off.
    */
   endWhenSilent(until) {
     const { state, currentTime } = this.context;
@@ -344,7 +351,7 @@ export class HtexNode extends Base {
     else if (!this.isEnded) setTimeout(() => this.endWhenSilent(until), LOOK_MS);
   }
 
-  /** An offline context does not run between its renderings. */
+  /** Whether the context is offline. An offline context runs only while it renders. */
   get isOffline() {
     return typeof OfflineAudioContext !== "undefined" && this.context instanceof OfflineAudioContext;
   }

@@ -1,4 +1,5 @@
-// The known options and their types. An unknown name is an error, because it would have no effect.
+// Checks options: their names and types. An unknown name is an error, because otherwise it would
+// silently have no effect.
 
 import { HtexError } from "./core.js";
 
@@ -31,7 +32,7 @@ function typeIs(value, type) {
   return type === "any" || (IS[type] ? IS[type](value) : typeof value === type);
 }
 
-/** Returns the number of letters that differ: added, removed or replaced. */
+/** Returns the number of letters to add, remove or replace to turn one word into the other. */
 function distance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, i) => i);
   for (let i = 1; i <= a.length; i++) {
@@ -50,7 +51,10 @@ function unknown(name, known, what) {
   return new HtexError(`${what} has no option \`${name}\`; ${advice}`, "invalid-argument");
 }
 
-/** Checks names and types of options against `what`. Returns the options. */
+/**
+ * Checks the names and types of options against `known`, and returns the options. `what` names the
+ * call in errors.
+ */
 export function checked(options, known, what) {
   if (!IS.object(options)) throw new HtexError(`the options of ${what} are an object, such as { model: "ar" }`, "invalid-argument");
   for (const [name, value] of Object.entries(options)) {

@@ -1,28 +1,28 @@
-// Drives the motors and actuators of gamepads: with two strengths from an envelope (`dual-rumble`),
-// or with the samples (`playPCM`).
+// Drives the motors and actuators of gamepads, either with two strengths from an envelope
+// (`dual-rumble`) or with samples (`playPCM`).
 
 import { HtexError } from "./core.js";
 import { checkTexture } from "./guarded.js";
 import { usualGain } from "./node.js";
 import { checked } from "./options.js";
 
-/** Strength of a level (RMS) of full scale. A motor's strength is at most 1. */
+/** Strength of a motor for a level (RMS) of full scale. Strengths are limited to 1. */
 const STRENGTH = 3;
 /**
- * Mean frequencies, Hz: up to the first, only the large motor runs; from the second on, only the
- * small one. `htex_dsp::reduced` has the same values.
+ * Mean frequencies, Hz. Up to the first one, only the large motor runs. From the second one on,
+ * only the small motor runs. `htex_dsp::reduced` has the same values.
  */
 const LARGE_MOTOR_HZ = 60;
 const SMALL_MOTOR_HZ = 420;
 /** Sample rate: the lowest that all browsers support in an AudioBuffer, Hz. */
 const RATE = 8000;
 /**
- * Duration of one message to the gamepad, seconds: of two strengths, and of samples, between which
- * a browser may leave a gap.
+ * Duration that one message to the gamepad covers, seconds: first for two strengths, then for
+ * samples. A browser may leave a gap between two blocks of samples.
  */
 const RUMBLE_S = 0.05;
 const SAMPLES_S = 0.25;
-/** An effect lasts for two blocks, so that it ends by itself if the page hangs. */
+/** Number of blocks for which an effect lasts. It ends by itself if the page hangs. */
 const HELD = 2;
 
 const RUMBLE = { gain: "number", duration: "number" };
@@ -31,8 +31,8 @@ const PLAYER = { model: "string", seed: "integer", motion: "object", gain: "numb
 const unit = (x) => (Number.isNaN(x) ? 0 : Math.min(Math.max(x, 0), 1));
 
 /**
- * Returns the parameters of the effect "dual-rumble" for an envelope. `gain` is the strength for a
- * level of 1, `duration` the effect's duration, ms.
+ * Converts an envelope to the parameters of the effect "dual-rumble". `gain` is the strength for a
+ * level of 1. `duration` is the effect's duration, ms.
  */
 export function dualRumble({ level, centroid }, options = {}) {
   const { gain = STRENGTH, duration = 1e3 * HELD * RUMBLE_S } = checked(options, RUMBLE, "dualRumble");
@@ -51,7 +51,7 @@ class PadPlayer {
     /** "pcm" or "dual-rumble". */
     this.way = typeof actuator.playPCM === "function" && typeof AudioBuffer === "function" ? "pcm" : "dual-rumble";
     this.isStopped = false;
-    /** Resolves when it was stopped; rejects when the gamepad fails. */
+    /** Resolves when the player was stopped. Rejects if the gamepad fails. */
     this.ended = this.play().finally(() => this.rest());
     this.ended.catch(() => {});
   }
@@ -75,8 +75,8 @@ class PadPlayer {
   }
 
   /**
-   * The promise resolves when the samples have been played, with `false` if the actuator cannot
-   * play samples.
+   * Plays one block of samples. The promise of `playPCM` resolves when the samples have been
+   * played. It resolves to `false` if the actuator cannot play samples.
    */
   async playSamples() {
     const samples = this.voice.render(SAMPLES_S * RATE).map((x) => Math.min(Math.max(this.gain * x, -1), 1));
@@ -89,8 +89,8 @@ class PadPlayer {
   async playRumble() {
     this.voice.render(RUMBLE_S * RATE);
     const effect = dualRumble(this.voice.envelope(), { gain: STRENGTH * this.gain });
-    // The promise resolves when the effect ends, but the next effect comes earlier. A failure is
-    // noticed then.
+    // The promise resolves when the effect ends, but the next effect starts earlier. So a failure
+    // is noticed only at the next effect.
     this.actuator.playEffect("dual-rumble", effect).catch((error) => (this.failure ??= error));
     await Promise.race([new Promise((resolve) => setTimeout(resolve, 1e3 * RUMBLE_S)), this.stopped()]);
     if (this.failure) throw this.failure;

@@ -1,34 +1,34 @@
-// The motion of a finger, a pen or a mouse over an element.
+// Measures the motion of a finger, a pen or a mouse over an element.
 
 import { HtexError } from "./core.js";
 import { checked } from "./options.js";
 
-/** Millimetres per CSS pixel. */
+/** Size of a CSS pixel, mm. */
 const MM_PER_PIXEL = 25.4 / 96;
 /**
- * Seconds over which the speed is averaged. After this time, a pointer that sends nothing is at
- * rest.
+ * Time over which the speed is averaged, seconds; and time after which a pointer that sends no
+ * events counts as resting.
  */
 const AVERAGED_S = 0.03;
 const RESTS_S = 0.06;
 /** Force of a pointer that reports no pressure, N. */
 const FORCE_N = 0.4;
 /**
- * Pressures that stand for "pressed" in devices that measure no pressure: the one in the
- * specification, and those that some browsers send.
+ * Pressures that devices without a pressure sensor send: 0.5 is in the specification, and some
+ * browsers send 0 or 1.
  */
 const NO_PRESSURE = [0, 0.5, 1];
 /**
- * Events that count as a gesture, after which a browser allows sound. A touch counts when it is
- * lifted.
+ * Events that browsers count as a user gesture, after which they allow sound. A touch counts when
+ * it is lifted.
  */
 const GESTURES = ["pointerdown", "pointerup", "touchend", "click", "keydown"];
 
 const OPTIONS = { mmPerPixel: "number", force: "function", defaultForce: "number" };
 
 /**
- * The force of events, in N. A device that has sent only the pressures that stand for "pressed"
- * does not measure any.
+ * Computes the force of pointer events, N. A device that has sent only the pressures in
+ * `NO_PRESSURE` counts as one that does not measure pressure.
  */
 class Force {
   constructor(map, unknown) {
@@ -44,10 +44,10 @@ class Force {
 }
 
 /**
- * Calls `moved({ speed, force, position, x, y })`, in mm/s, N, mm along the path and mm from the
- * upper left corner, while a pointer is on the element. The force is 0 when it leaves. Only one
- * pointer counts at a time; of a mouse, only the primary button counts. Returns a function that
- * ends this.
+ * Calls `moved({ speed, force, position, x, y })` while a pointer presses on the element. `speed`
+ * is in mm/s, `force` in N, `position` in mm along the path, and `x` and `y` in mm from the upper
+ * left corner. The force is 0 when the pointer leaves. Only one pointer is followed at a time, and
+ * a mouse only while its primary button is pressed. Returns a function that stops following.
  */
 export function followPointer(element, moved, options = {}) {
   check(element, "followPointer");
@@ -108,7 +108,10 @@ export function followPointer(element, moved, options = {}) {
   };
 }
 
-/** Lets a node follow a pointer over an element, and resumes its context on the first press. Returns a function that ends this. */
+/**
+ * Makes a node follow a pointer over an element, and resumes its audio context on the first press.
+ * Returns a function that stops following.
+ */
 export function follow(element, node, options) {
   check(element, "follow");
   if (!node?.speed?.setValueAtTime || !node.context) throw new HtexError("follow takes an element and an HtexNode", "invalid-argument");

@@ -1,15 +1,18 @@
-// The audio worklet: plays a source, and fades to another one.
+// The audio worklet. It plays a source of samples, and fades to another source.
 
 import { Here, Loop, There } from "./sources.js";
 import { Stage } from "./stage.js";
 import { Track } from "./track.js";
 
 const stage = new Stage();
-/** Duration of fades, seconds: at a start, at a stop, and from one texture to another. */
+/** Durations of fades, seconds: at a start, at a stop, and from one texture to another. */
 const START_S = 0.01;
 const STOP_S = 0.01;
 const CHANGE_S = 0.02;
-/** Largest number of sources that sound at the same time: one, and those that fade out. */
+/**
+ * Largest number of sources that are audible at the same time: the current one, and sources that
+ * fade out.
+ */
 const MOST_TRACKS = 4;
 /** Seconds between two envelopes. */
 const REPORT_S = 0.02;
@@ -48,14 +51,14 @@ class HtexProcessor extends AudioWorkletProcessor {
     if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
       this.stopping = true;
-      // A suspended context renders no fade.
+      // A suspended context renders no fade, so the sources are dropped at once.
       for (const track of this.tracks) data.isHeard ? track.fadeOut(STOP_S * sampleRate) : this.leave(track);
     }
   }
 
   /**
-   * Starts a source: a voice made from a description, a voice whose samples arrive at a port, or a
-   * loop, which plays the last loop's samples unless it brings its own.
+   * Starts a source. It is a voice that is made from a description, a voice whose samples arrive at
+   * a port, or a loop. A loop without samples of its own plays the samples of the last loop.
    */
   load({ id, description, samples, loop, gain }) {
     if (this.stopping) return;
@@ -87,7 +90,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     this.port.postMessage({ id, started: true });
   }
 
-  /** If there are too many sources, the quietest one fades out within the next block. */
+  /** If there are too many sources, makes the quietest one fade out within the next block. */
   thin() {
     for (const track of this.tracks) if (track.isOver) this.leave(track);
     const leaving = this.tracks.filter(({ isLeaving }) => isLeaving);

@@ -1,5 +1,5 @@
-// Scenes: surfaces, a motion and a device, played from memory. A third module plays them. It is
-// loaded when it is first needed.
+// Scenes: surfaces, a motion of the finger over them, and a device. All files are in memory. A
+// third WASM module plays scenes. It is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
 import { HtexError, toBytes } from "./core.js";
@@ -12,7 +12,7 @@ let core;
 /** Options for opening a scene. */
 const OPTIONS = { device: "string", profile: "string", settings: "any", quantity_gain: "number", trusted: "boolean" };
 
-/** Frees what its owner did not free. */
+/** Frees scenes that their owner did not free. */
 const abandoned = typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, id }) => core.call("scene-free", { id }));
 
 /**
@@ -39,7 +39,8 @@ function argument(text) {
 }
 
 /**
- * Opens a scene from the bytes of its file and of the files that it names, by their paths in it.
+ * Opens a scene from the bytes of its file. `files` holds the files that the scene names, by their
+ * paths in the scene.
  */
 export async function scene(bytes, files = {}, options = {}) {
   checked(options, OPTIONS, "scene");
@@ -59,9 +60,9 @@ export class Scene {
   }
 
   /**
-   * Renders the scene from its start, for its own duration or for `seconds`. If a Float32Array is
-   * passed in, renders the next samples into it and returns the part that was rendered, which is
-   * shorter at the end of the scene.
+   * Renders the scene from its start, for the given number of seconds or for its own duration. If a
+   * Float32Array is passed in, renders the next samples into it, and returns the part of it that
+   * was filled. At the end of the scene, this part is shorter than the array.
    */
   render(given) {
     if (given instanceof Float32Array) {
@@ -95,7 +96,9 @@ export class Scene {
     return new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
   }
 
-  /** Frees the memory of the scene, which cannot be used afterwards. A second call does nothing. */
+  /**
+   * Frees the memory of the scene. The scene cannot be used afterwards. A second call does nothing.
+   */
   free() {
     if (this.isFreed) return;
     this.isFreed = true;

@@ -1,9 +1,11 @@
-// Renders voices of untrusted models for another thread, which terminates this one if a call takes
-// too long.
+// Renders voices of untrusted models for another thread. That thread terminates this worker if a
+// call takes too long.
 
 import { Stage } from "./stage.js";
 
-/** Frames in a block, and number of blocks rendered in advance: 32 ms at 48 kHz. */
+/**
+ * Number of samples in a block, and number of blocks that are rendered in advance: 32 ms at 48 kHz.
+ */
 const FRAMES = 256;
 const AHEAD = 6;
 
@@ -12,7 +14,7 @@ export function serve(outside) {
   const stage = new Stage();
   const report = (id, error) => outside.postMessage({ id, error: { message: error.message, code: error.code } });
 
-  /** Plays a voice through a port to an audio worklet. */
+  /** Renders a voice and sends its samples through a port to an audio worklet. */
   const play = ({ id, description, port }) => {
     let voice = null;
     const attempt = (run) => {
@@ -45,7 +47,7 @@ export function serve(outside) {
     });
   };
 
-  /** Renders samples immediately. */
+  /** Renders the first samples of a voice and sends them back. */
   const render = ({ id, description, frames }) => {
     try {
       const voice = stage.voice(description);

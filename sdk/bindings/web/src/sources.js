@@ -1,6 +1,6 @@
-// Where a worklet gets its samples from.
+// The sources from which a worklet gets its samples.
 
-/** Duration of the ramp to silence, seconds, when samples are missing, and of the ramp back. */
+/** Duration of the ramp to silence when samples are missing, and of the ramp back, seconds. */
 const RAMP_S = 0.005;
 
 /** A voice in this thread. */
@@ -15,8 +15,8 @@ export class Here {
   }
 
   /**
-   * Renders a block; no samples are missing. If rendering fails, the last sample fades away within
-   * the block, and the error is thrown.
+   * Renders a block. Returns 0, because no samples are missing. If rendering fails, the last sample
+   * fades away within the block, and the error is thrown.
    */
   render(block) {
     try {
@@ -29,7 +29,9 @@ export class Here {
     }
   }
 
-  /** Returns what was played since the last call; null for a voice without bands. */
+  /**
+   * Returns the envelope of what was played since the last call, or null for a voice without bands.
+   */
   envelope() {
     return this.voice.bands > 0 ? this.voice.envelope() : null;
   }
@@ -43,9 +45,11 @@ export class Here {
   }
 }
 
-/** Samples that play in a loop while a finger slides, unchanged at any speed and force. */
+/**
+ * Samples that play in a loop while the finger slides. They are the same at any speed and force.
+ */
 export class Loop {
-  /** `step`: how many samples the loop advances per frame. */
+  /** `step` is the number of samples by which the loop advances for each output sample. */
   constructor(samples, step) {
     this.samples = samples;
     this.step = step;
@@ -62,7 +66,10 @@ export class Loop {
     this.isTouched = speed > 0 && force > 0;
   }
 
-  /** Renders a block; no samples are missing. The loop stands still while nothing is audible. */
+  /**
+   * Renders a block. Returns 0, because no samples are missing. The loop stands still while nothing
+   * is audible.
+   */
   render(block) {
     const ramp = (this.isTouched ? 1 : -1) / (RAMP_S * sampleRate);
     for (let i = 0; i < block.length; i++) {
@@ -91,8 +98,8 @@ export class Loop {
   }
 
   /**
-   * Returns what was played since the last call: its level and, as its centroid, half the rate of
-   * its sign changes.
+   * Returns the envelope of what was played since the last call. The centroid is estimated as half
+   * the rate of sign changes.
    */
   envelope() {
     const { power, frames, turns } = this;
@@ -109,8 +116,8 @@ export class Loop {
 }
 
 /**
- * A voice in a worker, which renders in advance. Blocks arrive at `port`, and are requested as they
- * are used.
+ * A voice in a worker, which renders blocks in advance. Blocks arrive at `port`. A new block is
+ * requested whenever one was used.
  */
 export class There {
   /** `started` is called when the first block has arrived. */
@@ -158,12 +165,12 @@ export class There {
     return this.last === undefined || this.isAlone ? 0 : lacking;
   }
 
-  /** Whether the worker was terminated and everything it had rendered has faded away. */
+  /** Whether the worker was terminated, and all of its samples have faded away. */
   get isOver() {
     return this.isAlone && this.blocks.length === 0 && this.weight === 0;
   }
 
-  /** Returns the first block to the worker to be filled again. */
+  /** Sends the first block back to the worker, which fills it again. */
   ask() {
     const { block, envelope } = this.blocks.shift();
     this.measured = envelope;
@@ -172,7 +179,7 @@ export class There {
     this.used = 0;
   }
 
-  /** The envelope of the last block. */
+  /** Returns the envelope of the last block. */
   envelope() {
     return this.measured;
   }

@@ -1,10 +1,13 @@
-// The voices of an audio worklet or of a worker. All share one core, and each texture is opened
-// once while one of its voices plays.
+// The voices of an audio worklet or of a worker. They all share one instance of the library. A
+// texture is opened only once, however many of its voices play.
 
 import { Core } from "./core.js";
 import { Texture } from "./texture.js";
 
-/** Seconds after which a voice with a lifted finger is silent: the contact ramp plus a margin. */
+/**
+ * Time after which a voice is silent once the finger is lifted, seconds: the ramp at contact plus a
+ * margin.
+ */
 const RESTS_S = 0.025;
 
 export class Stage {
@@ -29,7 +32,7 @@ export class Stage {
     }
   }
 
-  /** Frees the voice. Its texture is freed together with its last voice. */
+  /** Makes `free` of a voice also free the texture, if it is the texture's last voice. */
   counted(voice, key, kept) {
     const free = voice.free.bind(voice);
     voice.free = () => {
@@ -47,7 +50,7 @@ export class Stage {
   }
 }
 
-/** Lifts the finger of a new voice, and skips the samples until the voice is silent. */
+/** Lifts the finger of a new voice, and discards the samples until the voice is silent. */
 function rest(voice, rate) {
   voice.setMotion(0, 0);
   voice.render(Math.ceil(RESTS_S * rate));

@@ -4,13 +4,13 @@ import { BLOCK, HtexError, MOTION, toBytes, writeMotion } from "./core.js";
 import { GRID_HZ, measured } from "./measured.js";
 import { AT, READ, VOICE, checked, checkedMotion } from "./options.js";
 
-/** Frees what its owner did not free. */
+/** Frees objects that their owner did not free. */
 const abandoned =
   typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
 
 /**
- * Duration of the samples from which the spectra of sums of sinusoids are computed, seconds, and
- * their seed.
+ * For models that play sinusoids, spectra are computed from samples: the duration of these samples,
+ * seconds, and their seed.
  */
 const READ_S = 20;
 const READ_SEED = 1;
@@ -25,7 +25,8 @@ export class Handle {
   }
 
   /**
-   * Frees the memory of the object, which cannot be used afterwards. A second call does nothing.
+   * Frees the memory of the object. The object cannot be used afterwards. A second call does
+   * nothing.
    */
   free() {
     if (this.isFreed) return;
@@ -42,12 +43,12 @@ if (Symbol.dispose) {
 }
 
 /**
- * Options from `open`: whether models in modules may run in this thread, the modules that were
- * passed in, and the asset's own.
+ * Default options of `open`: whether WASM modules may run in this thread, the modules that were
+ * passed in, and whether the asset's embedded modules may run.
  */
 const ALL_RUN = { trusted: true, modules: [], embedded: true };
 
-/** A texture asset. */
+/** A texture: an open asset (a .htex file). */
 export class Texture extends Handle {
   constructor(core, data, options = ALL_RUN) {
     const bytes = toBytes(data);
@@ -61,13 +62,15 @@ export class Texture extends Handle {
     this.options = options;
   }
 
-  /** Whether models in modules may run. */
+  /**
+   * Whether models may run as WASM modules: modules that were passed to `open`, or embedded ones.
+   */
   get hasModules() {
     const { modules, embedded } = this.options;
     return modules.length > 0 || (embedded && (this.manifest.plugins ?? []).length > 0);
   }
 
-  /** Refuses a representation whose model is a module, unless it may run in this thread. */
+  /** Throws if the model of a representation is a WASM module that may not run in this thread. */
   guard(model, call) {
     const { trusted, modules, embedded } = this.options;
     if (trusted || !this.hasModules) return;
@@ -77,20 +80,22 @@ export class Texture extends Handle {
     throw new HtexError(`${call}: the model ${chosen} comes from a module, which nothing could stop in this thread; ${advice}`, "untrusted");
   }
 
-  /** Returns the model id of a representation, or of the one that a voice would choose. */
+  /**
+   * Returns the model id of the representation that `model` selects. Default: the representation
+   * that a voice would choose.
+   */
   chosenModel(model) {
     const { core } = this;
     return core.scope((take) => core.text("htex_asset_chosen_model", this.id, core.putText(take, model)));
   }
 
-  /** The bytes of the file. */
+  /** Returns the bytes of the texture's file. */
   toBytes() {
     return this.bytes.slice();
   }
 
   /**
-   * The manifest: name, conditions, representations, qualities and everything else that the asset
-   * states.
+   * The asset's whole manifest: name, conditions, representations, measured errors and so on.
    */
   get manifest() {
     this.read ??= JSON.parse(this.core.text("htex_asset_manifest_json", this.id));
@@ -116,7 +121,9 @@ export class Texture extends Handle {
     return this.manifest.contact ?? "unknown";
   }
 
-  /** How frequencies and level follow a motion outside the recorded ones. */
+  /**
+   * The law: how frequencies and level change with speed and force outside the recorded conditions.
+   */
   get law() {
     return JSON.parse(this.core.text("htex_asset_law_json", this.id));
   }
@@ -140,8 +147,8 @@ export class Texture extends Handle {
   }
 
   /**
-   * Returns the index of the condition at which a representation is played when no motion is given:
-   * the first, or the strongest if the first is silent.
+   * Returns the index of the condition at which a representation plays if no motion is given: the
+   * first one, or the strongest one if the first is silent.
    */
   defaultCondition(model) {
     const { core } = this;
@@ -151,7 +158,10 @@ export class Texture extends Handle {
     });
   }
 
-  /** Returns magnitudes of the texture's spectrum, in its unit, at frequencies in Hz. */
+  /**
+   * Returns the spectrum that a recording of the voice would show: one magnitude, in the texture's
+   * unit, for each frequency in Hz.
+   */
   spectrum(frequencies, options = {}) {
     const { core } = this;
     return this.represented(options, "texture.spectrum", (take, name, motion) => {
@@ -162,8 +172,8 @@ export class Texture extends Handle {
   }
 
   /**
-   * Returns magnitudes at a recorded condition, as a recording of the voice would show them:
-   * frequencies, and magnitudes in the unit.
+   * Returns the spectrum that a recording of the voice would show at a recorded condition:
+   * frequencies in Hz, and magnitudes in the texture's unit.
    */
   readSpectrum(options = {}) {
     const { model, condition = this.defaultCondition(options.model) } = checked(options, READ, "texture.readSpectrum");
@@ -176,7 +186,7 @@ export class Texture extends Handle {
     try {
       return { frequencies, magnitudes: this.readMagnitudes(model, condition, frequencies) };
     } catch (error) {
-      // The spectrum of a sum of sinusoids can only be computed from its samples.
+      // If the model plays sinusoids, the spectrum can only be computed from samples.
       if (error.code !== "unsupported") throw error;
       return { frequencies, magnitudes: this.readSamples(model, condition, frequencies) };
     }
@@ -207,7 +217,7 @@ export class Texture extends Handle {
     return Float64Array.from({ length: last - first + 1 }, (_, i) => GRID_HZ * (first + i));
   }
 
-  /** Returns the level of a representation: RMS in the unit. */
+  /** Returns the level at which a representation plays: RMS in the texture's unit. */
   level(options = {}) {
     const { core } = this;
     return this.represented(options, "texture.level", (take, name, motion) => {
@@ -231,13 +241,13 @@ export class Texture extends Handle {
     return core.scope((take) => read(take, core.putText(take, model), core.putMotion(take, at)));
   }
 
-  /** Makes a voice. */
+  /** Makes a voice, which plays the texture. */
   voice(options = {}) {
     return new Voice(this, options);
   }
 }
 
-/** A voice: a texture that plays. */
+/** A voice: a texture that is playing. */
 export class Voice extends Handle {
   constructor(texture, options) {
     const { core } = texture;
@@ -256,7 +266,7 @@ export class Voice extends Handle {
     return this.core.text("htex_voice_model", this.id);
   }
 
-  /** Sets the gain. The change takes 10 ms. */
+  /** Sets the gain. The voice reaches the new gain within 10 ms. */
   setGain(gain) {
     this.core.call("htex_voice_set_gain", this.id, gain);
   }
@@ -268,20 +278,20 @@ export class Voice extends Handle {
     return core.view().getUint32(core.results, true) !== 0;
   }
 
-  /** Restarts the voice as it was when it was made. */
+  /** Restarts the voice. It then gives the same samples as a new voice with the same options. */
   reset() {
     this.core.call("htex_voice_reset", this.id, 0);
   }
 
   /**
-   * Returns what was rendered since the last call: level (RMS, in the unit), centroid (Hz) and the
-   * mean square in each of the voice's `bands`.
+   * Returns the envelope of what was rendered since the last call: the level (RMS, in the texture's
+   * unit), the mean frequency (Hz), and the mean square in each of the voice's bands.
    */
   envelope(bands = new Float64Array(this.bands)) {
     return this.core.envelope(this.id, bands);
   }
 
-  /** Edges of the bands, Hz: one more than there are bands. */
+  /** Edges of the bands, Hz. There is one edge more than bands. */
   get envelopeEdges() {
     const { core } = this;
     const count = this.bands > 0 ? this.bands + 1 : 0;
@@ -300,8 +310,8 @@ export class Voice extends Handle {
   }
 
   /**
-   * Renders the next samples, in the texture's unit, into a Float32Array or into a new one of a
-   * given length. Does not allocate if an array is passed in.
+   * Renders the next samples, in the texture's unit. `out` is a Float32Array to fill, or the length
+   * of a new one. Does not allocate if an array is passed in.
    */
   render(out) {
     if (typeof out === "number") {
@@ -340,8 +350,8 @@ export class Voice extends Handle {
   }
 
   /**
-   * Returns how the voice plays a motion, or its current motion, and whether the motion lies within
-   * the recorded conditions.
+   * Returns how the voice plays a motion, and whether the motion lies within the recorded
+   * conditions. Default: the voice's current motion.
    */
   coverage(motion) {
     const { core } = this;
@@ -351,8 +361,8 @@ export class Voice extends Handle {
   }
 
   /**
-   * Returns the magnitudes that a recording of the voice would show at its current motion, in the
-   * unit, at frequencies in Hz.
+   * Returns the spectrum that a recording of the voice would show at its current motion: one
+   * magnitude, in the texture's unit, for each frequency in Hz.
    */
   spectrum(frequencies) {
     const { core } = this;

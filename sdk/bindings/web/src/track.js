@@ -1,4 +1,4 @@
-// A source in a worklet, with its gain and its fade.
+// A track: a source of samples in a worklet, with its gain and its fade.
 
 /** Whether two numbers are equal as 32-bit floats, which a node's parameters are. */
 function same(a, b) {
@@ -7,15 +7,15 @@ function same(a, b) {
 
 export class Track {
   /**
-   * Fades in within `frames`. The gain is `gain` until the node's parameter differs from
-   * `parameter`.
+   * Makes a track that fades in within `frames` samples. Its gain is `gain` until the node's gain
+   * parameter differs from `parameter`.
    */
   constructor(source, { gain, parameter, frames }) {
     this.source = source;
     this.given = gain;
     this.parameter = parameter;
     this.gain = null;
-    /** Progress of the fade, 0 to 1, and its step per frame. */
+    /** Progress of the fade, 0 to 1, and its change per sample. */
     this.way = 0;
     this.step = 1 / frames;
     this.motion = [];
@@ -41,7 +41,8 @@ export class Track {
   }
 
   /**
-   * Applies the gain, linearly from the last block's gain. A track that fades out keeps its gain.
+   * Applies the gain, with a linear ramp from the gain of the last block. A track that fades out
+   * keeps its gain.
    */
   level(block, parameter) {
     if (!this.isLeaving && !same(parameter, this.parameter)) this.given = null;
@@ -54,7 +55,10 @@ export class Track {
     for (let i = 0; i < block.length; i++) block[i] *= from + step * (i + 1);
   }
 
-  /** Fades with equal power, so that two textures of the same level have this level at any time. */
+  /**
+   * Applies the fade with equal power. So a fade between two textures of the same level keeps this
+   * level.
+   */
   fade(block) {
     if (this.way === 1 && this.step > 0) return;
     for (let i = 0; i < block.length; i++) {

@@ -1,4 +1,7 @@
-/** Browser types, if they are known: programs for Node.js are compiled without them. */
+/**
+ * Types of the browser. Programs for Node.js are compiled without these types, so each becomes
+ * `unknown` if it does not exist.
+ */
 
 type Instance<Name extends string> = typeof globalThis extends { [N in Name]: { prototype: infer T } } ? T : unknown;
 
@@ -9,7 +12,7 @@ export type EventLike = Instance<"Event">;
 export type WorkerLike = Instance<"Worker">;
 export type SignalLike = Instance<"AbortSignal">;
 
-/** The type of `AudioWorkletNode`; where it does not exist, a class that cannot be instantiated. */
+/** The type of `AudioWorkletNode`. If it does not exist, a class that cannot be instantiated. */
 export declare const NodeBase: typeof globalThis extends { AudioWorkletNode: infer T extends abstract new (...values: any) => any }
   ? T
   : abstract new () => object;

@@ -15,7 +15,7 @@ const TYPES = { ".js": "text/javascript", ".wasm": "application/wasm" };
 
 let server, browser, made;
 
-/** A page of a server that has the package and the fixtures. */
+/** Opens a page of a server that serves the package and the fixtures. */
 before(async () => {
   server = createServer(async (request, response) => {
     const [, folder, ...rest] = path.normalize(request.url).split("/");

@@ -1,4 +1,4 @@
-// The author module in Node.js: what it makes is what the command makes, bit for bit.
+// The author module in Node.js makes the same files as the command, bit for bit.
 
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -18,7 +18,7 @@ async function isFile(texture, name) {
   assert.ok(Buffer.from(texture.bytes).equals(await bytes(name)), `${name} has other bytes`);
 }
 
-/** An NPY file of single precision. */
+/** Returns an NPY file in single precision. */
 function npy(numbers) {
   const header = `{'descr': '<f4', 'fortran_order': False, 'shape': (${numbers.length},), }`.padEnd(117) + "\n";
   const start = Buffer.from(`\x93NUMPY\x01\x00${String.fromCharCode(header.length)}\x00`, "latin1");
@@ -77,7 +77,7 @@ test("samples are read of WAV, NPY and FLAC", async () => {
   const flac = author.columns({ name: "pcm16.flac", bytes: await bytes("pcm16.flac") }, { scale: 1 });
   const pcm = author.columns({ name: "pcm16.wav", bytes: await bytes("pcm16.wav") }, { scale: 1 });
   assert.deepEqual([flac.rate_hz, flac.columns.length], [pcm.rate_hz, pcm.columns.length]);
-  // Their writers round differently.
+  // The two writers round differently.
   const isNear = (x, i, k) => Math.abs(x - pcm.columns[i].first[k]) < 3 / 32768;
   assert.ok(flac.columns.every(({ first }, i) => first.length === 5 && first.every((x, k) => isNear(x, i, k))));
 });
@@ -101,12 +101,14 @@ test("a recording is read as the command reads it", async () => {
   const { steps, signals } = read.picture;
   assert.ok(steps <= 1000 && Object.keys(signals).includes("normal"));
   assert.ok(signals.signal.least.length === steps && signals.signal.least.every((x, i) => x <= signals.signal.greatest[i]));
-  // The map that is guessed reads the same.
+  // Reading with the guessed map gives the same result.
   const mapped = author.process(vinyl, { map: read.columns.map });
   assert.deepEqual(mapped.spectrum, read.spectrum);
 });
 
-/** The magnitude of a loop at a frequency of which it has a whole number of periods. */
+/**
+ * Returns the magnitude of a loop at a frequency that has a whole number of periods in the loop.
+ */
 function magnitudeOf({ samples, rate_hz }, hertz) {
   const turn = (2 * Math.PI * hertz) / rate_hz;
   let [re, im] = [0, 0];
@@ -124,7 +126,8 @@ test("a recording is a loop: its level, its band and no seam", () => {
   assert.ok(Math.abs(Math.sqrt(spectrum.magnitude.reduce((sum, m) => sum + m * m, 0) / 3) / loop.level_rms - 1) < 1e-9);
   const steps = loop.samples.map((x, i) => Math.abs(loop.samples[(i + 1) % loop.samples.length] - x));
   assert.ok(steps.at(-1) <= 1.5 * steps.slice(0, -1).reduce((most, step) => Math.max(most, step)));
-  // RMS of the frequencies of a range relative to all: beyond the band, whose ends reach 10 Hz, two bins of the window, farther, is little.
+  // RMS in a range of frequencies, relative to the whole RMS. It is small outside the band. The
+  // window widens the ends of the band by two bins, 10 Hz.
   const period = loop.rate_hz / loop.samples.length;
   const between = (low, high) => {
     const [first, last] = [Math.ceil(low / period), Math.floor(high / period)];
@@ -186,7 +189,7 @@ test("a texture is made of parameters, and played", async () => {
   const opened = await open(await bytes("hum.htex"));
   const [own, expected] = [hum, opened].map((texture) => texture.voice({ seed: 3 }).render(2000));
   assert.equal(difference(own, expected), -1);
-  // Two models, of which one has its level in its parameters, at two conditions.
+  // Two models at two conditions. One of the models has its level among its parameters.
   const bands = { below_highest: [0, 10, 20], step_db: 1, layout: 1 };
   const two = author.make({
     name: "two",
@@ -200,7 +203,8 @@ test("a texture is made of parameters, and played", async () => {
   });
   assert.deepEqual([two.conditions.length, two.models.length, two.unit], [2, 2, "m/s2"]);
   assert.ok(author.validate(two.bytes).valid);
-  // Of one condition, the command makes one texture of each model: one of both has the same parameters, levels and bytes of them.
+  // With one condition, the command makes one texture for each model. A texture with both models
+  // has the same parameters, levels and bytes.
   const here = { speed: 80, force: 0.5, level: 0.02 };
   const representations = [
     { model: "sbeta", conditions: [{ ...here, parameters: at.parameters }] },

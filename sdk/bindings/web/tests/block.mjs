@@ -1,4 +1,4 @@
-// Prints the time of a sample, ns: the least of several runs over blocks of 64.
+// Prints the time for one sample, ns: the shortest of several runs with blocks of 64 samples.
 
 import { readFile } from "node:fs/promises";
 import path from "node:path";

@@ -1,4 +1,4 @@
-// A browser with the policies that users have, and a web server for its pages.
+// Starts a browser with the same policies as users have, and a web server for its pages.
 
 import { cp, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
@@ -12,16 +12,19 @@ import { HTEX_FIXTURES, HTEX_PACKAGE } from "./fixtures.mjs";
 const { HTEX_CHROMIUM = "/usr/bin/chromium", HTEX_EXAMPLE } = process.env;
 const TYPES = { ".js": "text/javascript", ".html": "text/html", ".wasm": "application/wasm", ".css": "text/css" };
 /**
- * A name of this machine whose pages are not secure, like pages from another machine in the
- * network.
+ * A host name of this machine. Browsers treat its pages as not secure, like pages from another
+ * machine in the network.
  */
 const ELSEWHERE = "elsewhere.example";
 
 const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';
 
-/** Records what an audio node plays: `record(node)`, then `await recorded()`. A quantum without input, as after a node was disconnected,
- * is silent; one that was not rendered would be an error, since it would look like a click. `hold(context, ms)` has the audio thread do nothing
- * else for a while, as on a machine that is busy. */
+/**
+ * Records what an audio node plays: call `record(node)`, then `await recorded()`. A quantum without
+ * input, for example after a node was disconnected, is silent. A quantum that was not rendered is
+ * an error, because it would look like a click. `hold(context, ms)` blocks the audio thread for a
+ * while, as on a busy machine.
+ */
 const RECORDER = `
 const source = \`registerProcessor("record", class extends AudioWorkletProcessor {
   constructor() { super(); this.blocks = []; this.port.onmessage = () => this.port.postMessage(this.blocks.splice(0)); }
@@ -57,7 +60,10 @@ window.hold = async (context, ms) => {
   await held;
 };`;
 
-/** Starts both; `close` ends them, and removes the copies that they have served. */
+/**
+ * Starts the browser and the server. `close` ends both, and removes the copies that the server has
+ * served.
+ */
 export async function start() {
   const folder = await mkdtemp(path.join(tmpdir(), "htex-browser-"));
   await cp(HTEX_PACKAGE, path.join(folder, "htex"), { recursive: true });
@@ -87,7 +93,7 @@ export async function start() {
   });
 }
 
-/** Answers with a file, unless `here.answer` answers. */
+/** Answers a request with a file, unless `here.answer` answers it. */
 async function serve(here, request, response) {
   const { pathname } = new URL(request.url, "http://x");
   if (pathname === "/favicon.ico") return void response.writeHead(204).end();
@@ -100,7 +106,10 @@ async function serve(here, request, response) {
   }
 }
 
-/** Opens a page. `errors` has what it reports; `run` evaluates an expression without the gesture that Playwright's `evaluate` counts as. */
+/**
+ * Opens a page. `errors` has the errors that it reports. `run` evaluates an expression. Unlike
+ * Playwright's `evaluate`, this does not count as a user gesture.
+ */
 async function page(here, at, { origin = here.address, ...options }) {
   const made = await here.browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
   made.errors = [];
@@ -124,7 +133,10 @@ async function page(here, at, { origin = here.address, ...options }) {
   return made;
 }
 
-/** Writes a page with the second example of the README, which leaves its constants in `window`. */
+/**
+ * Writes a page with the second example of the README. The page stores the constants of the example
+ * in `window`.
+ */
 export async function writeExample(folder, file = "readme.html") {
   const page = `<!doctype html><script type=importmap>{"imports":{"htex":"/htex/index.js"}}</script><script src=/recorder.js></script>${SURFACE}`;
   await writeFile(path.join(folder, file), `${page}<script type=module>${await example()}</script>`);
@@ -138,7 +150,7 @@ export async function example() {
 
 export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Drags the mouse or a finger along a line, by the browser's protocol of input. */
+/** Drags the mouse or a finger along a line, through the browser's input protocol. */
 export async function drag(made, { touch = false, from = 50, to = 450, y = 100, lift = true } = {}) {
   const send = (kind, x) =>
     touch
@@ -154,16 +166,19 @@ export async function drag(made, { touch = false, from = 50, to = 450, y = 100, 
 
 const MOUSE = { Start: "mousePressed", Move: "mouseMoved", End: "mouseReleased" };
 
-/** RMS of numbers. */
+/** Returns the RMS of numbers. */
 export const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / Math.max(numbers.length, 1));
 
-/** The largest RMS of a tenth of a second at 48 kHz: of what sounds while an input goes on, which a busy machine hears late. */
+/**
+ * Returns the largest RMS over a tenth of a second at 48 kHz. An input lasts longer than this, and
+ * on a busy machine the sound comes late.
+ */
 export function loudest(numbers, frames = 4800) {
   const starts = Array.from({ length: Math.max(Math.ceil(numbers.length / frames), 1) }, (_, i) => i * frames);
   return Math.max(...starts.map((start) => rms(numbers.slice(start, start + frames))));
 }
 
-/** The largest step between neighbours, of those from `start` to `end`. */
+/** Returns the largest step between neighbouring samples from `start` to `end`. */
 export function largestStep(numbers, start = 0, end = numbers.length) {
   let largest = 0;
   for (let i = Math.max(start, 1); i < end; i++) largest = Math.max(largest, Math.abs(numbers[i] - numbers[i - 1]));

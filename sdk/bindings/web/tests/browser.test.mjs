@@ -9,7 +9,7 @@ import { start } from "./browser.mjs";
 import { HTEX_FIXTURES, MODELS, difference, samples } from "./fixtures.mjs";
 
 const { HTEX_PICTURE, HTEX_SECONDS = "60" } = process.env;
-/** Samples of the fade of a start, at 48 kHz. */
+/** Number of samples of the fade at a start, at 48 kHz. */
 const FADE = 480;
 
 let here;
@@ -19,7 +19,10 @@ before(async () => {
 after(() => here?.close());
 const page = (...options) => here.page(...options);
 
-/** Renders a node offline, in the page; returns its samples, or what a function makes of them. */
+/**
+ * Renders a node offline in the page. Returns its samples, or the result of a function of the
+ * samples.
+ */
 async function offline(made, asset, options, { seconds = 2, rate = 48000, speed = 80, force = 0.5, of = (samples) => samples } = {}) {
   const list = await made.evaluate(
     async ({ asset, options, seconds, rate, speed, force, of }) => {
@@ -69,7 +72,10 @@ test("what the worklet plays has the spectrum of the texture", async () => {
   await made.close();
 });
 
-/** Magnitudes in steps of 5 Hz, as `htex process` reads them: segments of 0.2 s, half overlapping, Hann window, RMS. */
+/**
+ * Returns magnitudes in steps of 5 Hz, computed as in `htex process`: segments of 0.2 s that
+ * overlap by half, Hann windows, RMS.
+ */
 function spectrum(signal, rate) {
   const len = rate / 5;
   const turns = Array.from({ length: len }, (_, n) => [Math.cos((2 * Math.PI * n) / len), Math.sin((2 * Math.PI * n) / len)]);
@@ -144,7 +150,8 @@ test("a hundred voices play without a gap", async () => {
   assert.equal(played.errors, 0);
   assert.equal(played.gaps, 0);
   assert.equal(played.silent, 0);
-  // The clock of the context goes on only while blocks are rendered in time; other programs may hold it up a little.
+  // The clock of the context advances only while blocks are rendered in time. Other programs may
+  // delay it a little.
   assert.ok(played.played > 0.9 * played.elapsed, JSON.stringify(played));
   await made.close();
 });
@@ -173,7 +180,8 @@ test("a module plays in a worker, and one that does not return is ended", async 
     const worker = new GuardedWorker({ limit: 500 });
     const start = performance.now();
     const endless = await open("/fixtures/bursts.htex", { modules, embedded: false });
-    // None of them runs in the page: neither what would not return, nor what an author is not trusted with.
+    // None of these modules runs in the page: neither a module that would not return, nor a module
+    // of an untrusted author.
     const attempt = (run) => {
       try {
         return `${run()}`;
@@ -182,7 +190,7 @@ test("a module plays in a worker, and one that does not return is ended", async 
       }
     };
     const refused = [() => endless.voice(), () => texture.voice({ model: "bursts" }), () => texture.level({ model: "bursts" }), () => endless.spectrum([50])].map(attempt);
-    // A module that does not return from its start, either.
+    // The same for a module that does not return from its start function.
     const looping = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 8, 1, 0, 10, 9, 1, 7, 0, 3, 64, 12, 0, 11, 11);
     const started = await open("/fixtures/vinyl.htex", { modules: [looping] });
     refused.push(attempt(() => started.voice()));

@@ -1,4 +1,4 @@
-// The README's page in bundles: each tool builds it, and it sounds on a press.
+// The page of the README as a bundle: each tool can build it, and it plays on a press.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -40,7 +40,7 @@ for (const [name, build] of Object.entries(TOOLS)) {
     await cp(HTEX_PACKAGE, path.join(app, "node_modules/htex"), { recursive: true });
     await writeFile(path.join(app, "package.json"), '{ "private": true, "type": "module" }');
     await writeFile(path.join(app, "main.js"), `${await example()}\nwindow.load = async (address) => node.load(await open(address), { model: "bursts" });`);
-    // A script of webpack is none of the type "module".
+    // A script that webpack builds does not have the type "module".
     const script = name === "webpack" ? "<script defer src=./main.js></script>" : "<script type=module src=./main.js></script>";
     const page = `<!doctype html><div id=surface style="width:600px;height:300px"></div>${script}`;
     await writeFile(path.join(app, "index.html"), page);
@@ -54,7 +54,7 @@ for (const [name, build] of Object.entries(TOOLS)) {
     await drag(made, { lift: false });
     const heard = await made.run("window.recorded()");
     assert.ok(loudest(heard) > 0.01, `${loudest(heard)}`);
-    // The worker is found, too: it plays a module.
+    // The page also finds the worker, because it plays a WASM module.
     await made.run("window.load('/fixtures/bursts.htex')");
     await drag(made, { lift: false });
     const module = await made.run("window.recorded()");

@@ -1,4 +1,4 @@
-// What the tests play: assets and samples that the `htex` command wrote.
+// The fixtures of the tests: assets and samples that the `htex` command wrote.
 
 import { readFile } from "node:fs/promises";
 import path from "node:path";
@@ -8,10 +8,10 @@ export const { HTEX_PACKAGE, HTEX_FIXTURES } = process.env;
 
 export const bytes = (name) => readFile(path.join(HTEX_FIXTURES, name));
 
-/** The short names of the built-in models, all of which `vinyl.htex` has. */
+/** The short names of the built-in models. `vinyl.htex` has a representation of each. */
 export const MODELS = JSON.parse(await bytes("info.json")).representations.map(({ model }) => model.split(".").pop());
 
-/** The samples of a WAV file of 32-bit floats. */
+/** Returns the samples of a WAV file of 32-bit floats. */
 export async function samples(name) {
   const file = await bytes(name);
   for (let at = 12; at < file.length; ) {
@@ -25,7 +25,7 @@ export async function samples(name) {
   throw new Error(`${name}: no data`);
 }
 
-/** The place of the first difference, or -1. */
+/** Returns the index of the first difference, or -1. */
 export function difference(a, b) {
   if (a.length !== b.length) return Math.min(a.length, b.length);
   const [x, y] = [a, b].map((s) => new Uint32Array(s.buffer, s.byteOffset, s.length));

@@ -1,4 +1,5 @@
-// Files of other haptic formats in Node.js: what is made of them is what the command makes, bit for bit.
+// Imports of files of other haptic formats in Node.js give the same textures as the command, bit
+// for bit.
 
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -15,7 +16,7 @@ const importer = await loadImporter();
 const GIVEN = { full_scale: 0.2, speed_mm_s: 80, force_n: 0.4 };
 const named = async (name) => ({ name, bytes: await bytes(name) });
 
-/** Files, the settings that the command was given, and the settings here. */
+/** Files, the settings for the command, and the same settings for the package. */
 const IMPORTS = [
   ["felt.xml", { license: "CC-BY-4.0" }],
   ["vinyl.glb", {}],
@@ -72,7 +73,7 @@ test("formats say what comes in, what is asked, and what is kept and lost", asyn
   }
   const settings = async (name) => importer.asks(await named(name)).map(({ setting }) => setting);
   assert.deepEqual(await settings("taps.ahap"), signal);
-  // The image that the command writes states the distance of its pixels.
+  // The image that the command writes states the distance between its pixels.
   assert.deepEqual(await settings("row.png"), signal);
   assert.deepEqual(await settings("felt.xml"), []);
 });

@@ -10,7 +10,7 @@ import { HTEX_PACKAGE, bytes, difference } from "./fixtures.mjs";
 
 const { Library, open } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
 
-/** Serves a file by ranges, and notes them. `change` changes what is sent. */
+/** Serves a file in ranges, and records the requested ranges. `change` changes the replies. */
 async function serve(file, change = {}) {
   const requests = [];
   const conditions = [];
@@ -21,7 +21,7 @@ async function serve(file, change = {}) {
     const version = change.versions || change.replaced ? `"${requests.length}"` : '"1"';
     const condition = request.headers["if-range"];
     conditions.push(condition);
-    // Of another version a server sends the whole file.
+    // If the file has another version, the server sends the whole file.
     if (change.replaced && condition && condition !== version) return response.writeHead(200).end(file);
     if (change.whole) return response.writeHead(200).end(file);
     if (change.status) return response.writeHead(change.status).end();
@@ -36,7 +36,7 @@ async function serve(file, change = {}) {
   return { url, requests, conditions, end: () => new Promise((closed) => server.close(closed)) };
 }
 
-/** The names that the fixture's library has, in their order. */
+/** The names in the fixture's library, in order. */
 async function names(library) {
   const names = [];
   for await (const entry of library.entries()) names.push(entry.name);

@@ -1,4 +1,5 @@
-// Loading in a page: servers that fail, places that are not secure, browsers that cannot send a module.
+// Loading in a page, with servers that fail, pages that are not secure, and browsers that cannot
+// send a module to a worklet.
 
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
@@ -11,7 +12,9 @@ before(async () => {
 });
 after(() => here?.close());
 
-/** What an expression of a page throws; `htex` is the package. */
+/**
+ * Returns the error that an expression throws in a page. In the expression, `htex` is the package.
+ */
 const thrown = (made, code) =>
   made.evaluate(`(async () => { const htex = await import("/htex/index.js"); try { ${code} } catch (e) { return { name: e.name, code: e.code, message: e.message }; } })()`);
 
@@ -87,7 +90,7 @@ test("a page that is not secure is told so", async () => {
   const error = await thrown(made, "await htex.prepare(new AudioContext())");
   assert.deepEqual([error.name, error.code], ["HtexError", "unsupported"]);
   assert.match(error.message, /https or localhost.*elsewhere\.example/);
-  // What needs no worklet works.
+  // Functions that need no worklet work.
   assert.equal(await thrown(made, "(await htex.open('/cloth.htex')).voice().render(8)"), undefined);
   await made.close();
 });
@@ -117,7 +120,7 @@ test("calls in the wrong order or with the wrong things say what to do", async (
   await made.close();
 });
 
-/** Plays for half a second in the page; RMS, and the error of the node. */
+/** Plays for half a second in the page. Returns the RMS, and the node's error. */
 const PLAY = `async (options = {}) => {
   const { open, prepare, HtexNode } = await import("/htex/index.js");
   const context = new AudioContext({ sampleRate: 48000 });
@@ -138,7 +141,7 @@ test("a browser that sends no compiled library to other threads sends its bytes"
   for (const file of ["vinyl.htex", "bursts.htex"]) {
     const made = await here.page();
     await made.evaluate(() => {
-      // As Safari has it.
+      // Simulates the behaviour of Safari.
       const isModule = (value) => value instanceof WebAssembly.Module || (value && typeof value === "object" && !ArrayBuffer.isView(value) && Object.values(value).some(isModule));
       const refuse = (value) => {
         if (isModule(value)) throw new DOMException("a module cannot be cloned", "DataCloneError");
@@ -186,7 +189,7 @@ test("the voices and textures of nodes that were stopped are freed", async () =>
     const { open, prepare, HtexNode } = await import("/htex/index.js");
     const context = new AudioContext({ sampleRate: 48000 });
     await context.resume();
-    // Counts the calls of the library in the audio thread.
+    // Counts the calls to the library in the audio thread.
     const counting = `const { Instance } = WebAssembly; globalThis.counts = {};
       WebAssembly.Instance = function (...values) {
         const made = new Instance(...values);

@@ -1,4 +1,4 @@
-// The example of a mesh whose material carries a texture, in Chromium.
+// The example of a mesh whose material refers to a texture, in Chromium.
 
 import assert from "node:assert/strict";
 import { cp } from "node:fs/promises";
@@ -20,7 +20,7 @@ before(async () => {
 });
 after(() => here?.close());
 
-/** The page with a mesh on it, and the middle of its view. */
+/** Opens the page with a mesh, and returns the middle of its view. */
 async function shown(file = path.join(HTEX_FIXTURES, "vinyl.glb")) {
   const made = await here.page("example/mesh.html");
   await made.setInputFiles("input[type=file]", file);
@@ -54,7 +54,7 @@ test("a pointer on the mesh plays its texture at its place and speed", async () 
     loudest = await made.evaluate(() => Number(document.querySelector("#level").dataset.rms));
   }
   assert.ok(loudest > 0.005, `${loudest}`);
-  // Right is more of x, down more of y.
+  // x increases to the right, y downwards.
   await made.mouse.move(x + 40, y + 20);
   assert.ok((await number(made, "#x")) > 52, `${await number(made, "#x")}`);
   assert.ok((await number(made, "#y")) > 51, `${await number(made, "#y")}`);

@@ -12,7 +12,7 @@ import { promisify } from "node:util";
 
 import { HTEX_FIXTURES, HTEX_PACKAGE, MODELS, bytes, difference, samples } from "./fixtures.mjs";
 
-/** The motion of the command's samples. */
+/** The motion at which the command rendered its samples. */
 const MOTION = { speed: 80, force: 0.5 };
 
 const { open, GuardedWorker, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
@@ -77,7 +77,8 @@ test("a texture tells what it is", async () => {
   assert.deepEqual({ kind: coverage.kind, inside: coverage.inside, speed: coverage.speed, force: coverage.force.kind }, { kind: "outside", inside: false, speed: speedReach, force: "inside" });
   assert.ok(Math.abs(coverage.frequencyFactor - 2) < 1e-9);
   assert.equal(voice.coverage().kind, "inside");
-  // What plays at the motion that is set is what the texture states for it, times the gain.
+  // The samples at a motion have the spectrum that the texture states for this motion, multiplied
+  // by the gain.
   voice.setMotion(faster.speed, faster.force);
   assert.equal(voice.coverage().kind, "outside");
   voice.setGain(0.5);
@@ -92,12 +93,13 @@ test("a texture tells what it is", async () => {
   assert.ok(alpha > 0 && beta > 0);
   const { below_highest: levels } = texture.parameters({ model: "bands" });
   assert.ok(Array.isArray(levels) && levels.length === 30 && Math.min(...levels) === 0);
-  // A recording reads nearly what the model states, in steps of 5 Hz.
+  // A recording shows nearly the spectrum that the model states, in steps of 5 Hz.
   const { frequencies, magnitudes: read } = texture.readSpectrum({ model: "ar" });
   assert.deepEqual([frequencies[0], frequencies.at(-1), read.length], [20, 1000, 197]);
   const stated = texture.spectrum(frequencies, { model: "ar" });
   assert.ok(read.slice(10, 150).every((m, i) => Math.abs(20 * Math.log10(m / stated[i + 10])) < 2));
-  // Of a sinusoid in a Hann window three bins are read, with 3 times its mean square.
+  // A Hann window spreads a sinusoid over three bins, whose squares add up to 3 times its mean
+  // square.
   const sinusoids = texture.readSpectrum({ model: "speak" }).magnitudes;
   const levelRead = Math.sqrt(sinusoids.reduce((sum, m) => sum + m * m, 0) / 3);
   assert.ok(Math.abs(levelRead / texture.level({ model: "speak" }) - 1) < 0.05, `${levelRead}`);
@@ -201,7 +203,7 @@ test("a worker stops a module that does not return", async () => {
   await assert.rejects(worker.render(endless, 100, options), { name: "HtexError", code: "model", message: /longer than 500 ms/ });
   assert.ok(performance.now() - start < 5000);
   await assert.rejects(worker.render(endless, 100, options), { code: "model" });
-  // Another worker plays a module that returns. It gives the same errors as a voice.
+  // Another worker plays a WASM module that returns. It reports the same errors as a voice.
   const texture = await open(await bytes("bursts.htex"));
   const guarded = new GuardedWorker();
   const expected = await samples("bursts.wav");
@@ -231,7 +233,7 @@ test("the examples of the README for Node.js run", async (t) => {
   const url = `http://127.0.0.1:${server.address().port}/cloth.htexlib`;
   const readme = await readFile(path.join(HTEX_PACKAGE, "README.md"), "utf8");
   const examples = [...readme.matchAll(/```js\n([\s\S]*?)```/g)].map(([, text]) => text);
-  // The second one is for a page: `sound.test.mjs` and `bundles.test.mjs` have it.
+  // The second example is for a page. `sound.test.mjs` and `bundles.test.mjs` test it.
   const [plays, , states, searches, measures] = examples;
   assert.equal(examples.length, 5);
   const search = searches.replace("https://example.org/cloth.htexlib", url).replace("woven/cotton", "vinyl");

@@ -1,4 +1,4 @@
-// Gamepads, in Node.js: what their haptics are told.
+// Gamepads in Node.js: the messages that their actuators receive.
 
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -10,7 +10,7 @@ import { HTEX_PACKAGE, bytes } from "./fixtures.mjs";
 
 const { dualRumble, open, playOnPad } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
 
-/** A gamepad that records what it is told. */
+/** A gamepad that records the messages that it receives. */
 function pad(more = {}) {
   const told = [];
   const vibrationActuator = {
@@ -49,7 +49,7 @@ test("a texture is two strengths every 50 ms, and rest at the end", async () => 
   player.setMotion(80, 0.5);
   await wait(400);
   const playing = told.slice(-4);
-  // An RMS of 0.1 at the first condition is a strength of 0.3.
+  // An RMS of 0.1 at the first condition gives a strength of 0.3.
   for (const { type, strongMagnitude, weakMagnitude, duration } of playing) {
     assert.equal(type, "dual-rumble");
     const strength = strongMagnitude + weakMagnitude;
@@ -77,7 +77,7 @@ test("a gamepad that fails ends the player", async () => {
   assert.throws(() => playOnPad(lost, texture, { rate: 8000 }), { code: "invalid-argument" });
 });
 
-/** The AudioBuffer of browsers, as far as `playOnPad` uses it. */
+/** A stand-in for the AudioBuffer of browsers, with the parts that `playOnPad` uses. */
 class Buffer {
   constructor(options) {
     Object.assign(this, options);
@@ -110,7 +110,7 @@ test("a gamepad that plays samples gets the voice's samples, within full scale",
     assert.ok(played.every((x, n) => x === Math.fround(Math.min(Math.max(4000 * expected[n], -1), 1))));
     assert.ok(played.some((x) => Math.abs(x) === 1), "some are limited");
 
-    // One that plays no samples says so, and gets strengths.
+    // A gamepad that cannot play samples reports this, and receives strengths instead.
     const other = pad({ playPCM: async () => false });
     const rumbling = playOnPad(other, texture, options);
     await wait(200);

@@ -1,4 +1,4 @@
-// Pointers, by the browser's protocol of input: mouse, pen, fingers.
+// Pointers (mouse, pen and fingers), simulated through the browser's input protocol.
 
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
@@ -11,7 +11,7 @@ before(async () => {
 });
 after(() => here?.close());
 
-/** A page whose surface is followed; `motions` are kept there. */
+/** Opens a page in which a pointer is followed over a surface. The page stores the `motions`. */
 async function followed(options = "", pageOptions) {
   const made = await here.page("empty.html", pageOptions);
   await made.run(`(async () => {
@@ -38,7 +38,7 @@ test("the mouse moves the finger", async () => {
   assert.deepEqual({ ...all.at(-1), position: 0, x: 0, y: 0 }, { speed: 0, force: 0, position: 0, x: 0, y: 0 });
   const across = Math.max(...all.map(({ x }) => x)) - Math.min(...all.map(({ x }) => x));
   assert.ok(Math.abs(across - 105.8) < 0.5 && all.every(({ y }) => Math.abs(y - all[0].y) < 0.01), `${across}`);
-  // A mouse tells no force.
+  // A mouse reports no force.
   assert.deepEqual([...new Set(all.map(({ force }) => force))].sort(), [0, 0.4]);
   await made.close();
 });
@@ -66,7 +66,7 @@ test("of two fingers the first one counts", async () => {
   const held = (await motions(made)).at(-1);
   await touch("touchEnd");
   const all = await motions(made);
-  // The first finger alone goes 100 pixels: 26.5 mm.
+  // Only the first finger moves 100 pixels: 26.5 mm.
   assert.ok(Math.abs(all.at(-1).position - 26.5) < 0.5, `${all.at(-1).position}`);
   assert.ok(fastest(all) < 400, `${fastest(all)}`);
   assert.equal(held.force, 0.3);
@@ -106,7 +106,7 @@ test("a pen that measures has its force, and a device that does not has the defa
   await pen("mouseMoved", 70, 0.5);
   await pen("mouseReleased", 70, 0);
   const forces = (await motions(made)).map(({ force }) => force.toFixed(2));
-  // A motion may be told twice.
+  // A motion may be reported twice.
   assert.deepEqual(forces.filter((force, i) => force !== forces[i - 1]), ["0.20", "0.60", "0.40", "0.00"]);
   await made.close();
 });

@@ -1,4 +1,4 @@
-// Scenes in Chromium, in a page and in a worker: the samples of the command.
+// Scenes in Chromium, in a page and in a worker, give the same samples as the command.
 
 import assert from "node:assert/strict";
 import { writeFile } from "node:fs/promises";
@@ -8,7 +8,7 @@ import test, { after, before } from "node:test";
 import { start } from "./browser.mjs";
 import { difference, samples } from "./fixtures.mjs";
 
-/** Plays a scene of the fixtures from what a server has; also the script of the worker. */
+/** Plays a scene of the fixtures with files from the server. The worker runs the same script. */
 const PLAY = `
 import { scene } from "/htex/scene.js";
 const file = async (name) => new Uint8Array(await (await fetch("/fixtures/scenes/" + name)).arrayBuffer());

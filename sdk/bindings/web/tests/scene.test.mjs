@@ -1,4 +1,4 @@
-// Scenes from memory in Node.js: the samples of the command.
+// Scenes from memory in Node.js give the same samples as the command.
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
@@ -15,7 +15,7 @@ const { scene } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "scene.node
 const file = (name) => readFile(path.join(HTEX_FIXTURES, "scenes", name));
 const filesOf = async (names) => Object.fromEntries(await Promise.all(names.map(async (name) => [name, await file(name)])));
 
-/** A plan without times, which the command may have measured. */
+/** Returns a plan without its times, because the command may have measured its own. */
 const withoutCosts = (plan) => JSON.parse(JSON.stringify(plan, (name, value) => (/^(ns_per_sample|renderer_ns|costs)/.test(name) ? undefined : value)));
 
 const FILES = {

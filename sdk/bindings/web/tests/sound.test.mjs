@@ -1,4 +1,4 @@
-// What is heard: under the default policy of autoplay, without clicks.
+// The sound of nodes: it plays under the default autoplay policy, and has no clicks.
 
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
@@ -52,7 +52,10 @@ test("a key on the surface resumes the context", async () => {
   await made.close();
 });
 
-/** Renders a node offline in a page. `play(node, at, htex)` may call `at(seconds, what)`, which is done while the rendering is held there. */
+/**
+ * Renders a node offline in a page. `play(node, at, htex)` may call `at(seconds, what)`: the
+ * rendering pauses at this time and `what` runs.
+ */
 async function offline(play, { seconds = 2, options = { model: "bands", seed: 7 } } = {}) {
   const made = await here.page();
   const heard = await made.evaluate(
@@ -65,7 +68,7 @@ async function offline(play, { seconds = 2, options = { model: "bands", seed: 7 
       const at = (second, what) =>
         context.suspend(second).then(async () => {
           await what();
-          // The worklet has then had its messages.
+          // By then the worklet has received its messages.
           await new Promise((done) => setTimeout(done, 30));
           context.resume();
         });
@@ -122,7 +125,7 @@ test("stop fades within 10 ms", async () => {
 });
 
 test("a friction map follows the place", async () => {
-  // At 80 mm/s, the finger is 8 mm further on 0.1 s later.
+  // At 80 mm/s, the finger has moved 8 mm after 0.1 s.
   const from = (x) =>
     offline(
       new Function(
@@ -174,7 +177,8 @@ test("load fades to another texture and its gain", async () => {
   console.log(`load: largest steps of the swaps, of their textures' own: ${ratios.map((x) => x.toFixed(2)).join(" ")}`);
   assert.ok(Math.max(...ratios) <= 1.5);
   const level = (i) => rms(heard.subarray((0.25 * i + 0.03) * RATE, (0.25 * i + 0.25) * RATE));
-  // The usual gain plays at -20 dB; the gain that was set is higher, and the next one keeps its ratio.
+  // The default gain plays at -20 dB. The gain that was set is higher, and the next texture keeps
+  // the ratio.
   assert.ok(Math.abs(20 * Math.log10(level(0) / 0.1)) < 1.5, `${level(0)}`);
   assert.ok(Math.abs(20 * Math.log10(level(1) / 0.1)) < 1.5, `${level(1)}`);
   assert.ok(level(3) > 1.5 * level(1), `${level(3)} ${level(1)}`);
@@ -214,7 +218,7 @@ test("load fades to a recording, which plays as it is while the finger slides, a
   for (let i = begin + 0.02 * RATE; i < rests; i++) assert.equal(heard[i], loop[(i - begin) % loop.length], `${i}`);
   const ramp = 0.005 * RATE;
   assert.ok(heard.slice(rests + ramp + 1, moves).every((x) => x === 0));
-  // It stood still from the end of that ramp on.
+  // The loop stood still from the end of this ramp on.
   let advanced = 0;
   for (let weight = 1; (weight = Math.max(weight - 1 / ramp, 0)) > 0; ) advanced += 1;
   const still = moves - rests - advanced;
@@ -300,14 +304,14 @@ test("load in a running context, of a module too, has no click and tells the env
     node.force.value = 0.5;
     await window.record(node);
     const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-    // By the clock of the context, which a busy machine holds up.
+    // Times are measured by the clock of the context, which is delayed on a busy machine.
     const play = async (seconds) => {
       for (const until = context.currentTime + seconds; context.currentTime < until; ) await wait(20);
     };
     await play(0.5);
     await node.load(module, { model: "bursts", motion });
     await play(0.5);
-    // Of many at once the last one counts.
+    // If there are many calls at the same time, the last one takes effect.
     await Promise.all([1, 2, 3, 4, 5].map((seed) => node.load(smooth, { model: "ar", seed, motion })));
     await play(0.3);
     node.stop();
@@ -322,7 +326,7 @@ test("load in a running context, of a module too, has no click and tells the env
   const last = heard.findLastIndex((x) => x !== 0);
   assert.ok(heard.length - last > 0.1 * RATE, "it was stopped");
   assert.ok(rms(heard.slice(last - 0.25 * RATE, last - 0.05 * RATE)) > 0.03);
-  // The largest step of all is one of a texture itself, which has many nearly as large.
+  // The largest step belongs to a texture itself, which has many steps that are nearly as large.
   const steps = heard.map((x, i) => Math.abs(x - heard[Math.max(i - 1, 0)])).sort((a, b) => b - a);
   assert.ok(steps[0] <= 1.5 * steps[20], `${steps[0]} ${steps[20]}`);
   assert.ok(envelopes.length > 30 && envelopes.every(({ bands }) => bands === 3), `${envelopes.length}`);

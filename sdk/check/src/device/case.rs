@@ -18,7 +18,7 @@ use crate::harness::Finding;
 const QUIET: f64 = 0.01;
 /// Frequency of the test tone, hertz.
 const TONE_HZ: f64 = 100.0;
-/// Maximum number of consecutive writes or reads that may take or deliver nothing, each waiting
+/// Maximum number of consecutive calls that may write or read no samples. Each call waits
 /// [`PATIENCE`].
 const EMPTY_CALLS: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -37,11 +37,11 @@ pub enum Subject {
 /// A loaded adapter and its settings.
 pub struct Case {
     pub(crate) adapter: Arc<dyn Adapter>,
-    /// The same adapter, if it is a native library.
+    /// The same adapter as a native adapter, if it is a native library.
     native: Option<NativeAdapter>,
     profile: Option<String>,
     given: BTreeMap<String, String>,
-    /// The folder for the files that an output writes, and a counter for their names.
+    /// The folder for files that an output writes, and a counter for the names of these files.
     pub(crate) folder: TempDir,
     files: AtomicU32,
 }
@@ -78,8 +78,8 @@ impl Case {
         self.native.as_ref().ok_or_else(built_in)
     }
 
-    /// Returns the given settings. A missing required setting becomes a new file of an output, or
-    /// the first endpoint.
+    /// Returns the given settings. Fills in missing required settings: with a new file for an
+    /// output, or with the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.settings_of(self.profile.as_deref())
     }
@@ -105,7 +105,7 @@ impl Case {
             let path = self.folder.path().join(format!("check-{count}.wav"));
             return Some(path.display().to_string());
         }
-        // Errors of listing are the subject of another check.
+        // Another check tests errors of listing endpoints.
         let all = self.adapter.endpoints().unwrap_or_default();
         let first = all.into_iter().find(|endpoint| endpoint.setting == setting.name);
         first.map(|endpoint| endpoint.name)
@@ -118,7 +118,8 @@ impl Case {
         can.map_err(skip_missing)
     }
 
-    /// Returns the default rate and a block size for opening a library; zeros for an input.
+    /// Returns the default sample rate and a block size for opening a library. For an input, both
+    /// are 0.
     pub(crate) fn format(&self) -> Result<StreamFormat, Finding> {
         Ok(match self.direction() {
             Direction::Input => StreamFormat { rate_hz: 0.0, block_frames: 0 },
@@ -169,7 +170,7 @@ impl Case {
     }
 }
 
-/// Writes all samples, and waits if the device has a clock.
+/// Writes all samples. If the device has a clock, waits until it takes them.
 pub(crate) fn write_all(output: &mut dyn Output, samples: &[f32]) -> Result<(), Finding> {
     let (mut left, mut empty) = (samples, 0);
     while !left.is_empty() {
@@ -187,7 +188,8 @@ pub(crate) fn write_all(output: &mut dyn Output, samples: &[f32]) -> Result<(), 
     Ok(())
 }
 
-/// Returns the rates to try: all of a list, or both ends of a range, and the default.
+/// Returns the sample rates to try: all rates of a list, or both ends of a range; and the default
+/// rate.
 pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     let mut rates = match &can.rates {
         Rates::List(all) => all.clone(),
@@ -199,8 +201,8 @@ pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     rates
 }
 
-/// Reads `frames` frames in blocks of various sizes, or fewer if the input ends. Returns their
-/// number.
+/// Reads `frames` frames in blocks of various sizes, or fewer if the input ends. Returns the number
+/// of frames.
 pub(crate) fn read_all(input: &mut dyn Input, frames: usize) -> Result<usize, Finding> {
     let width = input.stream().channels.len();
     let mut samples = vec![0.0; frames * width];
@@ -229,7 +231,7 @@ pub(crate) fn read_all(input: &mut dyn Input, frames: usize) -> Result<usize, Fi
     Ok(read)
 }
 
-/// Checks that calls were refused as closed.
+/// Checks that calls were refused because the device is closed.
 pub(crate) fn check_closed<const N: usize>(
     calls: [(&str, Result<(), DeviceError>); N],
 ) -> Result<(), Finding> {

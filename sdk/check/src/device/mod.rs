@@ -1,14 +1,14 @@
 //! The checker for devices, with one check for each guarantee of their ABI. [`crate::harness`] runs
 //! each check in its own process, so that a crash or an endless loop becomes a finding.
 //!
-//! [`CHECKS`] is the table of checks. Some apply only to outputs or only to inputs
-//! ([`checks_of`]). [`check`] runs the checks of one device, and [`run_one`] runs a single check in
-//! this process. A device is called as a scene or a recording calls it, through
+//! [`CHECKS`] is the table of checks. Some apply only to outputs or only to inputs ([`checks_of`]).
+//! [`check`] runs the checks of one device, and [`run_one`] runs a single check in this process.
+//! The checks call a device in the same way as a scene or a recording does, through
 //! [`htex_device::Adapter`]. For a built-in device, checks of a library's exports are skipped. The
-//! checks drive an output at a hundredth of its limit, and they also offer it samples beyond the
+//! checks drive an output at a hundredth of its limit, but they also pass it samples beyond the
 //! limit. Nobody may touch a device while it is checked.
 //!
-//! The faults in `tests/bad-devices` test this checker.
+//! The faulty devices in `tests/bad-devices` test this checker.
 #![forbid(unsafe_code)]
 
 mod case;

@@ -11,8 +11,9 @@ use crate::device::case::{Case, Subject};
 use crate::device::table::{CHECKS, checks_of};
 use crate::harness::{self, CheckError, Finding, Owner, Runner, run_all, run_process};
 
-/// The name under which a child process reports the direction of a library, which the checks to run
-/// depend on. Only child processes load a library, because that may crash.
+/// Name of a pseudo-check in which a child process reports the direction of a library. The
+/// direction determines which checks run. Only child processes load a library, because loading may
+/// crash.
 const DIRECTION: &str = "direction";
 
 /// The results of all checks of one device.
@@ -31,8 +32,8 @@ impl Display for DeviceName {
 }
 
 /// Runs all checks of a device, each check in its own process. `runner` is a program that calls
-/// [`run_one`]. Its arguments are the ones it was given, which name the device and its settings,
-/// followed by the name of the check.
+/// [`run_one`]. It gets its own arguments, which name the device and its settings, and then the
+/// name of the check.
 pub fn check(device: &str, subject: &Subject, runner: &Runner) -> Report {
     let direction = match subject {
         Subject::Builtin(adapter) => Some(adapter.descriptor().direction),

@@ -6,7 +6,8 @@ use crate::device::case::Case;
 use crate::device::checks::{describe, end, limit, open, read, write};
 use crate::harness::Check;
 
-/// Returns the checks of a direction. Without one, returns those that apply to both.
+/// Returns the checks for devices of a direction. Without a direction, returns the checks that
+/// apply to both.
 pub fn checks_of(direction: Option<Direction>) -> impl Iterator<Item = &'static Check<Case>> {
     CHECKS.iter().filter(move |check| {
         check.only.is_empty() || direction.is_some_and(|direction| check.only.contains(&direction))

@@ -14,8 +14,8 @@ pub(crate) struct Growth {
 }
 
 impl Growth {
-    /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over
-    /// the latter. `of` is the plural name of the repeated object.
+    /// Runs a tenth of `count` repetitions as a warm-up. Then runs `count` repetitions and measures
+    /// the growth during these. `of` is the plural name of the repeated object.
     ///
     /// # Errors
     /// The errors of `repeat`.
@@ -24,7 +24,7 @@ impl Growth {
         of: &'static str,
         mut repeat: impl FnMut(usize) -> Result<(), Finding>,
     ) -> Result<Self, Finding> {
-        // The first repetitions fill caches and pools, which is no leak.
+        // The first repetitions fill caches and pools. This growth is not a leak.
         repeat(count.div_ceil(10))?;
         let before = resident_bytes().unwrap_or_default();
         repeat(count)?;
@@ -36,8 +36,8 @@ impl Growth {
 /// Checks that memory does not grow while something plays and while it is opened and closed.
 ///
 /// # Errors
-/// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
-/// A skipped finding if resident memory cannot be read.
+/// A finding with the outcome `Failed` if memory grows by more than 2 MiB in either case. A finding
+/// with the outcome `Skipped` if resident memory cannot be read. Also the errors of `measure`.
 pub(crate) fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> CheckResult {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
@@ -63,8 +63,8 @@ pub(crate) fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> 
     }))
 }
 
-/// Returns the resident memory of this process, bytes (`VmRSS` in `/proc/self/status`). `None` if
-/// the file does not exist.
+/// Returns the resident memory of this process, bytes (`VmRSS` in `/proc/self/status`), or `None`
+/// if the file does not exist.
 fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -75,7 +75,8 @@ fn resident_bytes() -> Option<f64> {
 /// Checks that made-up extensions are absent. `has` queries one extension.
 ///
 /// # Errors
-/// A failed finding that names an extension that `has` reports, and the errors of `has`.
+/// A finding with the outcome `Failed` that names an extension which `has` reports. Also the errors
+/// of `has`.
 pub(crate) fn made_up_extensions<E: Into<Finding>>(
     has: impl Fn(&str) -> Result<bool, E>,
 ) -> CheckResult {

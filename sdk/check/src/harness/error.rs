@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Error: checks cannot be run, or a model cannot be measured.
+/// The error when checks cannot be run, or when a model cannot be measured.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckError {
@@ -12,7 +12,7 @@ pub enum CheckError {
     #[error("there is no check `{name}`; there are {}", known.join(", "))]
     Unknown {
         name: String,
-        /// The names in the table.
+        /// The names of all checks in the table.
         known: Vec<&'static str>,
     },
     /// The model cannot be read.

@@ -32,7 +32,7 @@ impl Outcome {
         matches!(self, Self::Failed | Self::Crashed | Self::TimedOut)
     }
 
-    /// Returns its name in the JSON report.
+    /// Returns the name of the outcome in the JSON report.
     pub fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -45,12 +45,12 @@ impl Outcome {
     }
 }
 
-/// An outcome, a sentence, and measured numbers.
+/// The finding of a check: an outcome, a sentence, and measured numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     pub outcome: Outcome,
     pub message: String,
-    /// Measured numbers by name. Each name ends in the unit.
+    /// Measured numbers by name. Each name ends with the unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub numbers: BTreeMap<String, f64>,
 }
@@ -64,22 +64,22 @@ impl Finding {
         Self { outcome, message: message.into(), numbers: BTreeMap::new() }
     }
 
-    /// Creates a finding that the guarantee holds.
+    /// Creates a finding which states that the guarantee holds.
     pub fn passed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Passed, message)
     }
 
-    /// Creates a finding that the guarantee holds, but something needs attention.
+    /// Creates a finding which states that the guarantee holds, but that something needs attention.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    /// Creates a finding that the check does not apply.
+    /// Creates a finding which states that the check does not apply.
     pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
 
-    /// Creates a finding that the guarantee is violated.
+    /// Creates a finding which states that the guarantee is violated.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Failed, message)
     }

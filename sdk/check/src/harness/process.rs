@@ -16,7 +16,7 @@ const MOST_OUTPUT: usize = 1 << 20;
 const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
-/// `timeout`, the finding says so.
+/// `timeout`, returns a finding that states this.
 pub(crate) fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = match command.spawn() {
@@ -32,7 +32,7 @@ pub(crate) fn run_process(command: &mut Command, timeout: Duration) -> Finding {
             announced(finding, last_finding(&text(&out)))
         }
         Some(status) => match last_finding(&text(&out)) {
-            // A finding that the check printed before a step that may crash.
+            // The check printed this finding before a step that may crash.
             Some(finding) if finding.outcome == Outcome::Crashed => {
                 announced(crashed(status, &text(&err)), Some(finding))
             }
@@ -42,7 +42,8 @@ pub(crate) fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     }
 }
 
-/// Completes the finding of a check that ended without a result, with what it had printed before.
+/// Completes the finding of a check that ended without a result, with the finding that it had
+/// printed before.
 fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
     if let Some(said) = said {
         finding.message = format!("{}; {}", finding.message, said.message);
@@ -54,11 +55,11 @@ fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
 /// The last [`MOST_OUTPUT`] bytes of a child's output.
 struct ChildOutput {
     kept: Arc<Mutex<VecDeque<u8>>>,
-    /// Is closed at the end of the pipe.
+    /// Closed when the pipe has ended.
     end: Receiver<()>,
 }
 
-/// Reads a pipe to its end, so that the child never blocks on it.
+/// Reads a pipe to its end in a thread, so that the child never blocks on it.
 fn drain(pipe: Option<impl Read + Send + 'static>) -> ChildOutput {
     let (open, end) = channel();
     let kept = Arc::new(Mutex::new(VecDeque::new()));
@@ -81,13 +82,13 @@ fn drain(pipe: Option<impl Read + Send + 'static>) -> ChildOutput {
 }
 
 fn text(drained: &ChildOutput) -> String {
-    // A process that the child has started may hold the pipe open for ever.
+    // A process that the child has started may keep the pipe open forever.
     let _ = drained.end.recv_timeout(AFTER_THE_END);
     let mut kept = drained.kept.lock().unwrap_or_else(PoisonError::into_inner);
     String::from_utf8_lossy(kept.make_contiguous()).into_owned()
 }
 
-/// Waits for the child to end; kills it after `timeout`.
+/// Waits until the child ends. Kills it after `timeout`.
 fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
     let end = Instant::now() + timeout;
     loop {
@@ -95,7 +96,7 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
             return Some(status);
         }
         if Instant::now() >= end {
-            // Both fail if the child has already ended.
+            // These calls fail if the child has already ended.
             let _ = child.kill();
             let _ = child.wait();
             return None;

@@ -14,11 +14,11 @@ pub struct CheckReport {
     pub finding: Finding,
 }
 
-/// The results of all checks of one `Subject`, which identifies the model or device and the
-/// settings.
+/// The results of all checks of a model or a device. `Subject` identifies the model or device, and
+/// the settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report<Subject> {
-    /// The subject. In JSON, its fields are next to `ok`.
+    /// The model or device. In JSON, the subject's fields stand next to `ok`.
     #[serde(flatten)]
     pub subject: Subject,
     /// Whether no check failed, crashed or timed out.

@@ -10,25 +10,26 @@ use crate::harness::process::run_process;
 use crate::harness::table::{Check, find};
 use crate::harness::{CheckError, CheckReport, Finding};
 
-/// The steps of loading, in order. Each has a check with the same name.
+/// The steps of loading, in their order. Each step has a check with the same name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 
 /// The check to which a loading error belongs.
 #[derive(Debug, Clone, Copy)]
 pub struct Owner {
     check: &'static str,
-    /// Whether the steps before it passed.
+    /// Whether the loading steps before this check passed.
     reached: bool,
 }
 
 impl Owner {
-    /// The error belongs to this check, and the loading steps before it passed.
+    /// States that the error belongs to this check, and that the loading steps before it passed.
     pub fn reached(check: &'static str) -> Self {
         let reached = true;
         Self { check, reached }
     }
 
-    /// The error belongs to this check, and it is unknown whether the steps before it passed.
+    /// States that the error belongs to this check, and that it is unknown whether the steps before
+    /// it passed.
     pub(crate) fn not_reached(check: &'static str) -> Self {
         let reached = false;
         Self { check, reached }
@@ -39,15 +40,15 @@ impl Owner {
 #[derive(Debug, Clone)]
 pub struct Runner {
     pub program: PathBuf,
-    /// Its first arguments. The checker appends the arguments that name the check.
+    /// The program's first arguments. The checker appends the arguments that name the check.
     pub arguments: Vec<OsString>,
     /// Longest time of one check.
     pub timeout: Duration,
 }
 
 /// Runs each check in a separate process. `add_arguments` appends the arguments that name the
-/// check. A check is skipped if one that it needs failed, or was skipped for this reason. A check
-/// that does not apply does not cause others to be skipped.
+/// check. A check is skipped if a check that it needs failed, or was itself skipped for this
+/// reason. If a check is skipped because it does not apply, the checks that need it still run.
 pub(crate) fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,

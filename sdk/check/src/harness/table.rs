@@ -12,21 +12,23 @@ pub struct Check<Case> {
     pub summary: &'static str,
     /// The test method with its tolerances; empty if the summary is sufficient.
     pub method: &'static str,
-    /// The only direction of devices to which it applies; empty: it applies to all.
+    /// The only direction of devices to which the check applies. If empty, it applies to both.
     pub only: &'static [Direction],
-    /// Checks that must not fail for this one to be meaningful.
+    /// Names of the checks that this check needs: its result is meaningful only if they do not
+    /// fail.
     pub needs: &'static [&'static str],
     pub run: fn(&Case) -> CheckResult,
 }
 
-/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check must come after
-/// the ones that it needs. A row is
-/// `"name" needs ["name", …] path::of::function: "summary", "method";`. The method is optional. A
-/// check of devices of one direction is `"name" for Output needs …`.
+/// Defines `CHECKS`, a table of [`Check`]s in the order in which they run. A check must come after
+/// the checks that it needs. A row has the form `"name" needs ["name", …] path::of::function:
+/// "summary", "method";`. The method is optional. If a check applies only to devices of one
+/// direction, its row begins with `"name" for Output needs …`.
 #[macro_export]
 macro_rules! checks {
     ($case:ty; $($name:literal $(for $direction:ident)? needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
-        /// All checks, in the order in which they run. A check comes after the ones that it needs.
+        /// All checks, in the order in which they run. A check comes after the checks that it
+        /// needs.
         pub const CHECKS: &[$crate::harness::Check<$case>] = &[$($crate::harness::Check {
             name: $name,
             summary: $summary,

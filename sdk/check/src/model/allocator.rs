@@ -1,20 +1,20 @@
 //! Counts the calls that loaded libraries make to the C library's allocator.
 //!
 //! The dynamic linker writes the addresses of `malloc` and related functions into a table of each
-//! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces those addresses
-//! by functions that count and then call the allocator. It changes every library of the process,
-//! including the C library and the C++ runtime. So `new`, `strdup` and the `Vec` of a Rust library
-//! are counted, separately in each thread. The program itself is not changed, so the host's own
-//! allocations are not counted.
+//! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces these addresses
+//! with the addresses of functions that count each call and then call the allocator. It does this
+//! in every library of the process, including the C library and the C++ runtime. So `new`, `strdup`
+//! and the `Vec` of a Rust library are also counted. Each thread has its own count. The table of
+//! the program itself is not changed, so the host's own allocations are not counted.
 //!
-//! Not detected: an allocator that a library links statically and that maps pages itself; calls
-//! through an address that was taken with `dlsym`; libraries loaded after the call; threads that a
-//! library starts.
+//! This method does not detect an allocator that a library links statically and that maps pages
+//! itself, calls through an address from `dlsym`, libraries that are loaded after `watch`, and
+//! threads that a library starts.
 //!
-//! Other methods were rejected. The state of the heap before and after does not show memory that
-//! was allocated and freed in between. A replaced `malloc` would be in every command. A preloaded
-//! library would be a second file to install. For a WASM module, only the growth of its memory is
-//! visible.
+//! Other methods were rejected. Comparing the heap before and after does not show memory that was
+//! allocated and freed in between. A replaced `malloc` would also be part of all other commands. A
+//! preloaded library would be a second file to install. For a WASM module, only the growth of its
+//! memory is visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;
@@ -23,7 +23,8 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use libc::{dl_phdr_info, size_t};
 
 thread_local! {
-    // Constant and without a destructor, because lazy initialisation would allocate.
+    // The initial value is a constant without a destructor, because lazy initialisation would
+    // allocate.
     static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -42,7 +43,7 @@ impl AllocatorCalls {
         Self { places }
     }
 
-    /// Returns the number of replaced table entries; 0 if no library calls the C library's
+    /// Returns the number of replaced table entries. It is 0 if no library calls the C library's
     /// allocator.
     pub(crate) fn places(&self) -> usize {
         self.places
@@ -144,7 +145,7 @@ struct Library {
     dynamic: *const Dynamic,
 }
 
-/// Replaces the addresses in one library. `places` counts the replaced ones.
+/// Replaces the addresses in one library, and adds their number to `places`.
 unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_void) -> c_int {
     // SAFETY: the dynamic linker passes a description that lives for the call, and `watch` the
     // address of a number.
@@ -185,8 +186,8 @@ impl Library {
         }
     }
 
-    /// Returns an address of the dynamic section. The GNU linker has already added the base to it;
-    /// others have not.
+    /// Returns an address of the dynamic section. The GNU linker has already added the base
+    /// address; other linkers have not.
     fn address(&self, tag: i64) -> usize {
         match self.value(tag) {
             0 => 0,
@@ -224,7 +225,8 @@ impl Library {
 
     fn replace_one(&self, relocation: &Relocation) -> bool {
         let symbol = (relocation.info >> 32) as usize;
-        // Relocations without a symbol are relative, and a function's own address has no addend.
+        // Skips relocations without a symbol, which are relative, and relocations with an addend,
+        // because the address of a function has none.
         if symbol == 0 || relocation.addend != 0 {
             return false;
         }

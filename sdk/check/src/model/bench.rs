@@ -26,7 +26,7 @@ pub struct Subject {
     pub loaded: LoadedModel,
 }
 
-/// Minimum, median and spread over the rounds.
+/// Minimum, median and spread of the times over the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
     /// The fastest round, ns. It is the time without other load on the machine.
@@ -61,7 +61,7 @@ pub struct Cost {
     /// Overhead of a call, ns: the minimum time of a call for one sample, minus the minimum time of
     /// a sample in a large block.
     pub per_call_ns: f64,
-    /// Time to the first sample, for a WASM module.
+    /// Time to the first sample; only for a WASM module.
     pub start: Option<Start>,
 }
 

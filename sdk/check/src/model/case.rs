@@ -12,11 +12,11 @@ use crate::model::spectra::{REFERENCES, Reference};
 /// Rate at which sounds are checked, hertz. It is the rate of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
 
-/// Total time of a module in one check. A check does far more than a player does, and the runner
-/// ends a check that takes too long.
+/// Total time that a WASM module may take in one check. It is long, because a check does far more
+/// than a player does, and the runner ends a check that takes too long.
 const MODULE_TOTAL: Duration = Duration::from_secs(600);
 
-/// Returns the limits of a player, except for the total time.
+/// Returns the limits of WASM modules. They are the same as in a player, except for the total time.
 fn limits() -> WasmLimits {
     let limits = WasmLimits::default();
     let all = limits.all.with_time(MODULE_TOTAL);
@@ -69,7 +69,7 @@ impl Case {
         self.fit_in(Band::TACTILE, &Band::TACTILE.grid_hz(), magnitude)
     }
 
-    /// Fits a spectrum on another grid.
+    /// Fits a spectrum on another frequency grid.
     pub(crate) fn fit_in(&self, band: Band, grid: &[f64], m: &[f64]) -> Result<Fit, HostError> {
         self.fit_any((band, grid), (m, &[]), FitCondition::default())
     }
@@ -140,7 +140,7 @@ impl Case {
             .ok_or_else(|| Finding::failed("there are no parameters"))
     }
 
-    /// Returns two different parameter sets; `None` if all fits returned the same one.
+    /// Returns two different parameter sets, or `None` if all fits returned the same set.
     pub(crate) fn two_sets(&self) -> Result<Option<Pair>, Finding> {
         let mut fitted = self.fitted()?.into_iter().map(|f| f.parameters);
         let Some(first) = fitted.next() else {
@@ -189,13 +189,13 @@ impl Case {
     }
 }
 
-/// Returns whether the model cannot be fitted to this spectrum.
+/// Returns whether an error states that the model cannot be fitted to this spectrum.
 pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     matches!(error, HostError::Call { status: Status::CannotFit, .. })
 }
 
-/// Returns whether the model refused a call: whether the error is a status that neither a failed
-/// model nor a trapped module returns.
+/// Returns whether an error means that the model refused a call. Statuses of a failed model or of a
+/// trapped WASM module are no refusals.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if !matches!(status, Status::Panicked | Status::Failed))
 }

@@ -1,5 +1,5 @@
-//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. A call that reads
-//! or writes beyond an array is detected and named.
+//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. They detect and
+//! name a call that reads or writes beyond an array.
 
 use crate::harness::Finding;
 
@@ -35,7 +35,7 @@ pub(crate) struct Fenced<T> {
     len: usize,
     /// The call that gets the array.
     call: &'static str,
-    /// The argument that bounds the array.
+    /// The argument that limits the array's length.
     bound: &'static str,
 }
 
@@ -98,7 +98,8 @@ impl<T: Number> Fenced<T> {
     }
 }
 
-/// From now on, reading or writing a fence ends this process with a finding.
+/// Starts watching: from now on, a call that reads or writes a fence ends this process with a
+/// finding.
 pub(crate) fn watch() {
     #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
     crate::model::pages::watch();

@@ -11,8 +11,8 @@
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
 //!
-//! A model is checked from outside, by the calls that a host makes. The faulty models in
-//! `tests/bad-plugins` test that the checker blames exactly the guarantee that is broken.
+//! A model is checked from outside, by the same calls that a host makes. The faulty models in
+//! `tests/bad-plugins` test that the checker reports exactly the guarantee that is violated.
 #![deny(unsafe_code)] // Allowed in `allocator` and `pages` only.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]

@@ -1,7 +1,7 @@
-//! Memory that ends at the end of a page, with protected pages behind it, and the signal handler
-//! that names the call that touched them.
+//! Memory that ends at the end of a page and has protected pages behind it (a fence). A signal
+//! handler names the call that touched a fence.
 //!
-//! The alternatives would be a debugger's allocator or an instrumented build, but a model must be
+//! A debugger's allocator or an instrumented build would be alternatives. But a model must be
 //! checked as it is shipped.
 #![allow(unsafe_code)] // Pages and signals are calls of the system.
 
@@ -17,8 +17,8 @@ const FENCE: usize = 64 << 20;
 /// Maximum number of arrays at a time.
 const PLACES: usize = 32;
 
-/// The fences of the live arrays, for the handler: their start and the line to print. A start of 0
-/// means a free place, 1 a place that is being filled.
+/// The fences of the arrays in use, for the signal handler: the start of each fence and the line to
+/// print. A start of 0 marks a free place, and 1 a place that is being filled.
 static STARTS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
 static LINES: [AtomicPtr<u8>; PLACES] = [const { AtomicPtr::new(std::ptr::null_mut()) }; PLACES];
 static LENGTHS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
@@ -95,7 +95,7 @@ impl<T: Copy + Default> Pages<T> {
 impl<T> Drop for Pages<T> {
     fn drop(&mut self) {
         if let Some(place) = self.place {
-            // Given up first, so that the handler no longer uses the line.
+            // Freed first, so that the handler no longer uses the line.
             STARTS[place].store(0, Ordering::SeqCst);
         }
         // SAFETY: the mapping of this value, which nobody uses any more.
@@ -131,8 +131,8 @@ extern "C" fn on_fault(signal: c_int, info: *mut siginfo_t, _: *mut c_void) {
             }
         }
     }
-    // Another fault: it happens again, and ends the process.
-    // SAFETY: the default action.
+    // This is another fault. It will happen again, and the default action ends the process. SAFETY:
+    // the default action.
     unsafe { libc::signal(signal, libc::SIG_DFL) };
 }
 

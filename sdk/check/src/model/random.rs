@@ -1,4 +1,4 @@
-//! Random numbers for seeded parameters and the fuzzer, which are the same on every machine.
+//! Random numbers for random parameters and for the fuzzer. They are the same on every machine.
 
 /// A 64-bit generator (splitmix64).
 #[derive(Debug, Clone)]
@@ -21,8 +21,8 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Returns a number in a range that includes both ends. For a wide range of positive numbers,
-    /// the logarithm is uniform.
+    /// Returns a number in a range, which includes both ends. In a wide range of positive numbers,
+    /// the logarithm is uniformly distributed.
     pub(crate) fn within(&mut self, min: f64, max: f64) -> f64 {
         let part = self.unit();
         let is_wide = min > 0.0 && max / min > 100.0;

@@ -12,12 +12,12 @@ use crate::model::table::CHECKS;
 
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's
-    /// name and the options for the seed and for the other file, if there is one.
+    /// A program that calls [`run_one`]. After its own arguments it gets the file, the name of the
+    /// check, and the options for the seed and, if there is one, for the other file.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
-    /// Names of the checks to run, together with the ones they need; all if `None`.
+    /// Names of the checks to run. The checks that they need also run. `None` runs all checks.
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,
@@ -25,7 +25,7 @@ pub struct Options {
     pub fuzz: Option<Duration>,
 }
 
-/// Fails unless the file can be read. Otherwise a check would blame the model for it.
+/// Returns an error if the file cannot be read. Otherwise a check would blame the model.
 fn readable(file: &Path) -> Result<(), CheckError> {
     let is_file = std::fs::File::open(file).and_then(|opened| opened.metadata());
     let error = match is_file {

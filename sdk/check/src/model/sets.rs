@@ -1,4 +1,5 @@
-//! Parameter sets for testing a model, in addition to those fitted to reference spectra.
+//! Parameter sets for testing a model, in addition to the sets that are fitted to reference
+//! spectra.
 
 use htex_host::{Band, Field, FitCondition, HostError, Kind, Status, Store};
 use htex_model::{Values, flatten};
@@ -8,14 +9,14 @@ use crate::model::case::{Case, RATE_HZ, is_cannot_fit};
 use crate::model::random::Random;
 use crate::model::spectra::{REFERENCES, Reference};
 
-/// Number of seeded sets in a check.
+/// Number of random sets in a check. They are determined by a seed.
 pub(crate) const SEEDED: usize = 16;
-/// Number of attempts to find a set that the model accepts. Parameters within the ranges may
-/// describe no spectrum.
+/// Number of attempts to find a random set that the model accepts. Parameters within their ranges
+/// need not describe a spectrum.
 const TRIES: usize = 20;
-/// Maximum length of a list in a seeded set.
+/// Maximum length of a list in a random set.
 const LONGEST: usize = 32;
-/// Duration of the signals of a spectrum, seconds.
+/// Duration of the signals that are made from a spectrum, seconds.
 const SIGNAL_S: f64 = 0.5;
 /// Rate at which a modulated signal changes between loud and quiet, hertz.
 const MODULATION_HZ: f64 = 8.0;
@@ -30,9 +31,9 @@ pub(crate) struct Set {
 /// A set with one field at an end of its range, and the same set with the field slightly inside.
 pub(crate) struct AtBound {
     pub(crate) set: Set,
-    /// The set with the field a thousandth of the range further inside.
+    /// The same set, with the field a thousandth of the range further inside.
     pub(crate) inside: Vec<f64>,
-    /// Whether the end is 0, which may mean silence.
+    /// Whether this end of the range is 0, which may mean silence.
     pub(crate) is_zero: bool,
 }
 
@@ -51,8 +52,8 @@ impl Case {
         flatten(self.model.descriptor(), &lists)
     }
 
-    /// Returns parameters with each field in turn at both ends of its range, as a file would store
-    /// them. A list is at its bound as a whole.
+    /// Returns sets in which one field is at an end of its range, for each field and both ends, as
+    /// a file would store them. If the field is a list, all its numbers are at the end.
     pub(crate) fn at_bounds(&self, parameters: &[f64]) -> Result<Vec<AtBound>, Finding> {
         let lists = self.lists(parameters)?;
         let mut sets = Vec::new();
@@ -78,7 +79,8 @@ impl Case {
         Ok(sets)
     }
 
-    /// Returns a random set within the ranges. Each field is drawn or has the value of `near`.
+    /// Returns a random set within the ranges. Each field is either random or has the value of
+    /// `near`.
     pub(crate) fn drawn(&self, near: &[f64], random: &mut Random) -> Result<Vec<f64>, Finding> {
         let mut lists = self.lists(near)?;
         for (list, field) in lists.iter_mut().zip(&self.model.descriptor().fields) {
@@ -98,7 +100,7 @@ impl Case {
         Ok(self.flat(&lists))
     }
 
-    /// Returns a seeded set within the ranges that the model accepts; `None` if it refuses all
+    /// Returns a random set within the ranges that the model accepts, or `None` if it refuses all
     /// attempts.
     pub(crate) fn seeded(&self, near: &[f64], seed: u64) -> Result<Option<Set>, Finding> {
         let mut random = Random::new(seed);
@@ -112,8 +114,8 @@ impl Case {
         Ok(None)
     }
 
-    /// Whether the model has a magnitude for parameters within the ranges. Such parameters may
-    /// describe no spectrum in the band.
+    /// Returns whether the model has a magnitude for parameters within the ranges. Such parameters
+    /// need not describe a spectrum in the band.
     ///
     /// # Errors
     /// When the magnitude is not finite, or the call fails in another way.
@@ -125,8 +127,8 @@ impl Case {
         }
     }
 
-    /// Fits the reference spectra together with stationary and modulated signals. Spectra that the
-    /// model cannot be fitted to are left out.
+    /// Fits the reference spectra together with stationary and modulated signals. Leaves out
+    /// spectra to which the model cannot be fitted.
     pub(crate) fn fitted_to_signals(&self) -> Result<Vec<Set>, Finding> {
         let mut sets = Vec::new();
         for reference in [&REFERENCES[0], &REFERENCES[4]] {
@@ -153,7 +155,8 @@ impl Case {
     }
 }
 
-/// Whether an error says that parameters in range describe no spectrum in a band.
+/// Returns whether an error means that parameters within their ranges describe no spectrum in a
+/// band.
 pub(crate) fn describes_nothing(error: &HostError) -> bool {
     matches!(
         error,
@@ -187,8 +190,9 @@ fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     (0..(SIGNAL_S * RATE_HZ) as usize).map(sample).collect()
 }
 
-/// Returns numbers as a file stores them. A value in its range stays in the range, as in the writer
-/// of assets: if the nearest stored value is outside, the next one towards the range is used.
+/// Returns numbers as a file stores them. A value in its range stays in the range: if the nearest
+/// value that can be stored is outside, the next one towards the range is used. The writer of
+/// assets does the same.
 pub(crate) fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
     let Field { min, max, .. } = *field;
     let keep = |&x: &f64| {

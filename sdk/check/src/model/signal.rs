@@ -5,7 +5,7 @@ use htex_host::{Band, GRID_HZ};
 
 use crate::model::case::RATE_HZ;
 
-/// Fraction of a spectrum's energy in the compared bins.
+/// Fraction of a spectrum's energy that the compared bins contain.
 const JUDGED: f64 = 0.99;
 
 /// Returns the root mean square.
@@ -24,7 +24,7 @@ pub(crate) fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     let mut count = 0.0;
     for segment in samples.windows(len).step_by(len / 2) {
         let segment: Vec<f64> = segment.iter().map(|&x| x.into()).collect();
-        // Cannot fail, because the lengths are the analyser's own.
+        // This cannot fail, because the lengths come from the analyser.
         if analyzer.analyze(&segment, &mut bins).is_err() {
             continue;
         }
@@ -38,8 +38,8 @@ pub(crate) fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     power.iter().map(|p| (p / count).sqrt() * scale).collect()
 }
 
-/// Returns the RMS difference of two spectra in decibels after matching their levels. Compares only
-/// the reference's strongest bins, which contain 99 % of its energy.
+/// Returns the RMS difference of two spectra in decibels, after their levels were matched. Compares
+/// only the strongest bins of the reference, which contain 99 % of its energy.
 pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     let energy = |m: &[f64]| m.iter().map(|m| m * m).sum::<f64>();
     let total = energy(reference);
@@ -53,7 +53,7 @@ pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
             break;
         }
         held += reference[i] * reference[i];
-        // No bin is 0 here: the strongest come first, and they end at 99 % of the energy.
+        // No bin is 0 here, because the strongest bins come first and end at 99 % of the energy.
         let db = 20.0 * (gain * measured[i] / reference[i]).log10();
         sum += db * db;
         n += 1.0;
@@ -61,9 +61,9 @@ pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     (sum / n).sqrt()
 }
 
-/// Returns the spectrum that the periodic Hann window measures for noise with these magnitudes as
-/// its density: two thirds of the power in its own bin, a sixth in each neighbour, and no power
-/// from outside the band.
+/// Returns the spectrum that the periodic Hann window measures for noise whose density has these
+/// magnitudes. Two thirds of a bin's power stay in the bin, and a sixth goes to each neighbour.
+/// Outside the band there is no power.
 pub(crate) fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
     let power = |i: Option<usize>| i.and_then(|i| magnitude.get(i)).map_or(0.0, |m| m * m);
     let read = |i: usize| {

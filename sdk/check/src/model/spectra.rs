@@ -18,7 +18,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     Reference { name: "few peaks", curve: few_peaks },
 ];
 
-/// Degenerate spectra. A fit of one may succeed or return a status.
+/// Degenerate spectra. A fit to one of these may succeed or return a status.
 pub(crate) const HARD: &[Reference] = &[
     Reference { name: "silence", curve: |_| 0.0 },
     Reference { name: "one line", curve: |f| if f == 200.0 { 0.01 } else { 0.0 } },

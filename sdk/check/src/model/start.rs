@@ -9,20 +9,22 @@ use serde::Serialize;
 use crate::harness::Finding;
 use crate::model::case::RATE_HZ;
 
-/// Number of measurements without and with a cached module. The minimum of each counts.
+/// Numbers of measurements, first without and then with a cached module. The minimum of each
+/// counts.
 const COLD: usize = 3;
 const WARM: usize = 10;
 
 /// Times from a file to the first sample, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Start {
-    /// Time if the module has to be compiled.
+    /// Time if the module must be compiled.
     pub cold_ms: f64,
     /// Time if the compiled module is in the cache.
     pub warm_ms: f64,
 }
 
-/// Measures a module with a new cache folder. `None` for a model that is not a module in a file.
+/// Measures a WASM module with a new cache folder. Returns `None` for a model that is not a WASM
+/// module in a file.
 pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<Start>, Finding> {
     let Origin::Wasm(file) = model.origin() else {
         return Ok(None);

@@ -1,8 +1,8 @@
-/* {{LABEL}}, to begin with one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
- * filter's own: 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
+/* {{LABEL}}: initially one resonance. The model plays white noise through a two-pole band-pass
+ * filter, so its spectrum is 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
- * Against htex_model.h and htex_motion_1.h alone: no C library, so that the same file is a native library and a WASM
- * module, of the same samples. See build.sh.
+ * This file needs only htex_model.h and htex_motion_1.h. It uses no C library, so that the native
+ * library and the WASM module can be built from it and have the same samples. See build.sh.
  */
 #include <stdatomic.h>
 
@@ -11,13 +11,14 @@
 #include "htex_model_wasm.h"
 #include "htex_motion_1.h"
 
-/* 1: the voice is told the finger's motion (the extension htex.motion/1) and follows it itself; a host then scales
- * neither frequencies with the speed nor the level with the force. 0: the host does both. */
+/* 1: the host passes the finger's motion to the voice (extension htex.motion/1), and the voice
+ * follows it. The host then scales neither frequencies with the speed nor the level with the
+ * force. 0: the host does both. */
 #ifndef FOLLOWS_MOTION
 #define FOLLOWS_MOTION 0
 #endif
 
-/* ---- what the model says of itself ---- */
+/* ---- the descriptor: what the model states about itself ---- */
 
 enum { CENTRE, BANDWIDTH, PARAMETERS };
 
@@ -39,7 +40,7 @@ static const char DESCRIPTOR[] =
 
 /* ---- checks ---- */
 
-/* Whether one set of parameters stands at `p`. */
+/* Checks one set of parameters, at `p`. */
 static int64_t check_set(const double *p)
 {
     if (!within(p[CENTRE], MIN[CENTRE], MAX[CENTRE]))
@@ -58,7 +59,7 @@ static int64_t check_parameters(const double *p, size_t len)
     return check_set(p);
 }
 
-/* Parameters, and that they have a spectrum in the band. */
+/* Checks the parameters, and that they have a spectrum in the band. */
 static int64_t check_shape(const double *p, size_t len, double low_hz, double high_hz)
 {
     int64_t status = check_parameters(p, len);
@@ -73,7 +74,7 @@ static int64_t check_shape(const double *p, size_t len, double low_hz, double hi
 
 enum { EDGE_SECTIONS = 4, VOICES = 256 };
 
-/* The resonance, its noise scaled so that what comes out has unit RMS. */
+/* The resonance. Its noise is scaled so that the output has unit RMS. */
 struct tone { struct biquad filter; double gain; };
 
 struct voice {
@@ -83,12 +84,13 @@ struct voice {
     struct tone now, next, pending;
     int fading, waiting;
     double faded, fade_frames;
-    /* How much of the texture is felt, and where that goes in 10 ms. */
+    /* The current level of the texture, and its target, which the level reaches within 10 ms. */
     double level, goal;
     struct biquad low_cut[EDGE_SECTIONS], high_cut[EDGE_SECTIONS];
 };
 
-/* `generation` is odd while a voice lives here; a handle holds it and the slot's number. */
+/* `generation` is odd while this slot has a voice. A handle contains the generation and the
+ * slot's number. */
 struct slot { atomic_flag taken; atomic_uint generation; struct voice voice; };
 
 static struct slot slots[VOICES];
@@ -103,8 +105,9 @@ static struct slot *find(int64_t handle)
     return live ? &slots[number] : NULL;
 }
 
-/* A bin of magnitude m has power m^2 / 3; white noise of unit variance has 2 * 5 Hz / rate in each:
- * so the noise is scaled by sqrt(rate / 30) over the shape's RMS. */
+/* A bin of magnitude m has the power m^2 / 3. White noise of unit variance has the power 2 * 5
+ * Hz / rate in each bin. So the noise is multiplied by sqrt(rate / 30) and divided by the
+ * shape's RMS. */
 static struct tone tone_of(const double *p, const struct voice *v)
 {
     static const double band_pass[3] = {0.0, 1.0, 0.0};
@@ -130,7 +133,8 @@ static void make_edges(struct voice *v)
     }
 }
 
-/* Begins to fade to the waiting resonance, which takes over the state: no click, and no gap. */
+/* Begins to fade to the waiting resonance. It takes over the filter's state, so that there is no
+ * click and no gap. */
 static void begin_fade(struct voice *v)
 {
     v->next = v->pending;
@@ -170,7 +174,7 @@ static void start(struct voice *v, const double *p, uint64_t seed)
     v->level = v->goal = 1.0;
     v->now = tone_of(p, v);
     make_edges(v);
-    /* The filters settle before the first sample is heard. */
+    /* Lets the filters settle before the first sample is played. */
     double settle = 4.0 * v->rate_hz / v->band.pass_low_hz;
     for (double n = settle < 65536.0 ? settle : 65536.0; n > 0.0; n -= 1.0)
         next_sample(v);
@@ -288,7 +292,8 @@ double htex_model_voice_rate(const double *parameters, size_t parameters_len, do
         status = check_rate(wanted_hz);
     if (status != HTEX_OK)
         return (double)status;
-    /* Ten times the band, where the filters are near their analogue models, in whole steps. */
+    /* At least ten times the highest frequency of the band, where the filters are close to their
+     * analogue models. The rate is a whole fraction or a whole multiple of the wanted one. */
     double least = clamp(10.0 * band_high_hz, HTEX_MIN_RATE_HZ, HTEX_MAX_RATE_HZ);
     if (wanted_hz >= least)
         return wanted_hz / (double)(uint64_t)(wanted_hz / least);
@@ -379,8 +384,9 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len)
 
 #if FOLLOWS_MOTION
 
-/* What the voice makes of the motion, to begin with: the faster the finger, the stronger the texture, as it was
- * recorded at 100 mm/s. Position and place are where a model comes in that is tied to them. */
+/* How the voice follows the motion. In this template, the level is proportional to the speed, up
+ * to a factor of 4, and at 100 mm/s the texture plays as recorded. A model may also use position
+ * and place, for example for a pattern that is fixed to the surface. */
 int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm, double x_mm,
                           double y_mm)
 {
@@ -397,7 +403,7 @@ int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, doub
     return HTEX_OK;
 }
 
-/* NaN is a speed or force that is not known. This model has no parameter that depends on them. */
+/* NaN stands for an unknown speed or force. This model has no parameter that depends on them. */
 int64_t htex_motion_1_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
                           const double *magnitude, size_t bins, const double *signal,
                           size_t signal_len, double signal_rate_hz, const double *options,

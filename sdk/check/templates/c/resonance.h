@@ -1,5 +1,5 @@
-/* The spectrum of one resonance, and its fit to a recorded spectrum. Included by the model, which defines the indices
- * CENTRE and BANDWIDTH of its parameters and their ranges MIN and MAX.
+/* The spectrum of one resonance, and its fit to a recorded spectrum. The model includes this file,
+ * and defines the indices CENTRE and BANDWIDTH of its parameters and their ranges MIN and MAX.
  */
 #ifndef RESONANCE_H
 #define RESONANCE_H
@@ -8,8 +8,9 @@
 
 struct band { double low_hz, high_hz, pass_low_hz, pass_high_hz; };
 
-/* Noise is cut off half a bin below the band, as each bin stands for so much, and from 13 % inside
- * its upper edge: so that less than 2 % of the power of the widest resonance lies outside. */
+/* A filter cuts the noise off half a bin below the band, because a bin stands for 5 Hz around
+ * its frequency. At the upper edge it cuts off from 13 % inside the band. So less than 2 % of
+ * the power of the widest resonance lies outside the band. */
 static struct band band_of(double low_hz, double high_hz)
 {
     double cut = low_hz - 0.5 * HTEX_GRID_HZ;
@@ -26,7 +27,7 @@ static double power_16(double x)
     return x;
 }
 
-/* The filters' magnitude at a frequency, in any scale; 0 outside the band. */
+/* Returns the magnitude of the filters at a frequency, in any scale; 0 outside the band. */
 static double shape_at(const double *p, struct band band, double f)
 {
     if (!within(f, band.low_hz, band.high_hz))
@@ -36,7 +37,7 @@ static double shape_at(const double *p, struct band band, double f)
     return 1.0 / __builtin_sqrt((1.0 + detuned * detuned) * edges);
 }
 
-/* RMS of the shape on the grid; 0 if no multiple of 5 Hz lies in the band. */
+/* Returns the RMS of the shape on the grid; 0 if no multiple of 5 Hz lies in the band. */
 static double shape_rms(const double *p, struct band band)
 {
     double power = 0.0;
@@ -55,7 +56,8 @@ enum { SHAPE = 2 /* parameters of the resonance */ };
 
 struct spectrum { const double *hz, *magnitude; size_t bins; double largest; };
 
-/* Squared distance of the best scaled shape to the spectrum, over the spectrum's own square. */
+/* Returns the squared distance of the best scaled shape to the spectrum, divided by the square
+ * of the spectrum. */
 static double misfit(const double *p, struct band band, struct spectrum s)
 {
     double hm = 0.0, hh = 0.0, mm = 0.0;
@@ -68,14 +70,14 @@ static double misfit(const double *p, struct band band, struct spectrum s)
     return hh > 0.0 && mm > 0.0 ? 1.0 - hm * hm / (hh * mm) : 1.0;
 }
 
-/* Tries one step from `p`; keeps it if it is better. */
+/* Tries one step from `p`. Keeps the step if the fit is better. */
 static int try_step(double *p, double *best, int field, double factor, struct band band,
                     struct spectrum s)
 {
     double at[SHAPE] = {p[CENTRE], p[BANDWIDTH]};
     at[field] = clamp(at[field] * factor, MIN[field], MAX[field]);
-    /* Inside the band: an asset rounds what it stores, and a resonance at the upper edge has half of
-     * its power outside. */
+    /* The centre stays inside the band, because an asset rounds its numbers, and because a
+     * resonance at the upper edge would have half of its power outside. */
     at[CENTRE] = clamp(at[CENTRE], band.low_hz * 1.0001, band.high_hz * 0.9);
     double value = misfit(at, band, s);
     if (!(value < *best))
@@ -86,7 +88,7 @@ static int try_step(double *p, double *best, int field, double factor, struct ba
     return 1;
 }
 
-/* From the best of a coarse grid, by steps that halve until they are 0.01 %. */
+/* Searches from the best point of a coarse grid, by steps that are halved until they are 0.01 %. */
 static void search(double *p, struct band band, struct spectrum s)
 {
     double best = 2.0;

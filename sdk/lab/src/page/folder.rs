@@ -1,21 +1,23 @@
-//! Serves a folder of files to browsers on this machine only: the studio.
+//! Serves a folder of files, such as the studio, to browsers on this machine only.
 //!
-//! All files are read at the start, so that no request can name a file on disk. Links are refused:
-//! the folder may come from somebody else, and its scripts would read what the links lead to.
+//! All files are read at the start, so that no request can name a file on disk. Links are refused,
+//! because the folder may come from somebody else, and its scripts could read the files to which
+//! the links lead.
 //!
 //! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, and only
 //! this user can read the key. A browser keeps service workers and stored data separately for each
 //! name. So no other program can leave a script at this address, and a page of one folder cannot
-//! read what a page of another folder stored. The name of a folder stays the same from one time to
-//! the next. Requests to any other name, including `127.0.0.1`, are refused.
+//! read what a page of another folder stored. A folder always gets the same name. Requests to any
+//! other name, including `127.0.0.1`, are refused.
 //!
-//! A page cannot navigate its tab elsewhere, so that its scripts cannot carry away what a user
-//! drops on it. No header forbids that: browsers never had `navigate-to`, and a sandbox without
-//! `allow-top-navigation` only binds frames. So each page begins with `stay.js`, which uses the
-//! Navigation API to cancel every navigation to another origin. This has no effect in a browser
-//! without that API (`'navigation' in window` is false). Service workers, which could answer with a
-//! page of their own, are refused. Two ways out are not covered: names that a browser looks up
-//! ahead of time (`dns-prefetch`), and WebRTC.
+//! A page must not navigate its tab to another address, because its scripts could thereby send away
+//! files that a user drops on the page. No header can forbid this: browsers never had
+//! `navigate-to`, and a sandbox without `allow-top-navigation` restricts only frames. So each page
+//! begins with `stay.js`, which uses the Navigation API to cancel every navigation to another
+//! origin. This has no effect in a browser without that API (`'navigation' in window` is false).
+//! Service workers are refused, because they could answer with a page of their own. Scripts can
+//! still send data in two ways: by names that a browser looks up ahead of time (`dns-prefetch`),
+//! and by WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -40,8 +42,8 @@ const MOST_DEPTH: usize = 4;
 /// The page served at `/`.
 const INDEX: &str = "index.html";
 
-/// The script that keeps a page at its address, and what is put at the start of each page. Browsers
-/// ignore the second doctype.
+/// The script that keeps a page at its address, and the text that is put at the start of each page.
+/// Browsers ignore the page's own doctype, which is then the second one.
 const STAY: &str = include_str!("stay.js");
 const STAY_NAME: &str = "htex-stay.js";
 const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>";
@@ -49,11 +51,11 @@ const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>"
 const HTML: &str = "text/html; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
-/// What an image may do when it is opened as a page: nothing.
+/// Policy for an image that is opened as a page. It may load and run nothing.
 const PICTURE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 const POLICY: &str = "Content-Security-Policy";
 
-/// What a page of the folder may do: nothing outside the folder.
+/// Headers of all files. They forbid a page to access anything outside the folder.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-cache"),
     ("Referrer-Policy", "no-referrer"),
@@ -103,12 +105,13 @@ impl ServedFolder {
     }
 }
 
-/// Returns a file as it is served. A page starts with the script that keeps it at its address.
+/// Returns a file as it is served. Adds to a page the script that keeps it at its address.
 fn kept_at_home((name, bytes): (String, Bytes)) -> (String, Bytes) {
     if kind_of(&name) != HTML {
         return (name, bytes);
     }
-    // A byte order mark would become text of the page, because it would no longer come first.
+    // Removes a byte order mark, which would become text of the page, because it would no longer
+    // come first.
     let text = bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(&bytes);
     let begun = [BEGINNING.as_bytes(), text].concat();
     (name, begun.into())
@@ -117,7 +120,7 @@ fn kept_at_home((name, bytes): (String, Bytes)) -> (String, Bytes) {
 /// Returns the name at which a folder is served: 32 hexadecimal digits that nobody without the key
 /// can know.
 fn name(folder: &Path, key: &Key) -> String {
-    // A folder has one name, whichever path leads to it.
+    // Resolves the path, so that a folder has one name, whichever path leads to it.
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
     // All 32 bytes would be 64 digits, and a label of a host name has at most 63.
@@ -141,7 +144,7 @@ fn read(
         let entry = entry.map_err(failed)?;
         let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
         let name = format!("{below}{}", entry.file_name().to_string_lossy());
-        // The type of a link is its own and not its target's, so `own.read` below refuses it.
+        // For a link, this is the type of the link itself, so `own.read` below refuses it.
         if kind.is_dir() {
             if depth == MOST_DEPTH {
                 return Err(wrong(&path, "the folders lie too deep for a page"));

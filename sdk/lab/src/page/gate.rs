@@ -1,4 +1,4 @@
-//! Checks requests, and tracks which tab owns the page. Only the head of a request is known here.
+//! Checks requests, and tracks which tab owns the page. The checks use only the head of a request.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ const SILENT: Duration = Duration::from_secs(8);
 
 /// Decides which requests a page accepts.
 pub(super) struct Gate {
-    /// Start of the path of every request: `/token/`.
+    /// Start of the path of every request: `/TOKEN/`, with the page's random token.
     root: String,
     /// Host names of this server. The first one is printed first.
     hosts: Vec<String>,
@@ -31,9 +31,9 @@ pub(super) enum PageRequest {
 pub(super) type Refusal = (StatusCode, &'static str);
 
 impl Gate {
-    /// Creates the gate of a page whose path starts with a token. The host name has never been used
-    /// before. If the system chose the port, `127.0.0.1` is also accepted, for browsers that cannot
-    /// resolve the host name.
+    /// Creates the gate of a page whose path starts with `token`. `name` must be a host name that
+    /// was never used before. If the system chose the port, the gate also accepts `127.0.0.1`, for
+    /// browsers that cannot resolve the host name.
     pub(super) fn new(token: &str, name: &str, port: u16, is_chosen: bool) -> Self {
         let number = (!is_chosen).then(|| format!("127.0.0.1:{port}"));
         Self {
@@ -42,14 +42,15 @@ impl Gate {
         }
     }
 
-    /// Returns the addresses of the page. Only the first one is safe from what other programs left
-    /// in the browser.
+    /// Returns the addresses of the page. Only the first one is safe from scripts that other
+    /// programs left in the browser.
     pub(super) fn urls(&self) -> Vec<String> {
         let hosts = self.hosts.iter();
         hosts.map(|host| format!("http://{host}{}", self.root)).collect()
     }
 
-    /// Decides by the head of a request, before its body is read.
+    /// Checks the head of a request, before the body is read. Returns what the request asks for, or
+    /// the reason for a refusal.
     pub(super) fn admit(&self, head: &Parts, requests: &[&str]) -> Result<PageRequest, Refusal> {
         check_origin(head, &self.hosts)?;
         let Some(path) = head.uri.path().strip_prefix(&self.root) else {

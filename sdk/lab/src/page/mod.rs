@@ -2,8 +2,9 @@
 //!
 //! The address contains a random token. Requests with another host name or origin are refused
 //! before they are read. So other pages in the browser and other users of the machine can neither
-//! see nor answer nor delay anything. One tab owns the page until it is closed or silent for 8 s;
-//! other tabs are refused. Any tab can stop the session at any time, with a button or with Escape.
+//! see nor answer requests, nor delay them. One tab owns the page until it is closed or silent for
+//! 8 s; other tabs are refused. Any tab can stop the session at any time, with a button or with
+//! Escape.
 
 mod folder;
 mod gate;
@@ -14,7 +15,8 @@ use serde_json::Value;
 pub use folder::ServedFolder;
 pub(crate) use server::LocalPage;
 
-/// What a page shows and which requests it takes. The server's thread calls both functions.
+/// The content of a page, and the requests that it accepts. The server's thread calls both
+/// functions.
 pub(crate) trait Content: Send + Sync + 'static {
     /// The page itself.
     const HTML: &'static str;

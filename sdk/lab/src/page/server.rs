@@ -1,13 +1,14 @@
 //! The server of a page. It listens only on 127.0.0.1.
 //!
-//! Any program on this machine may connect, but it cannot delay the owner of the page. `hyper`,
-//! which has its own runtime with one thread, hands a request over before its body arrives. The
-//! gate decides by the head, and only then is a body of at most 4096 bytes read. Head and body each
-//! have a deadline of one second. At most 64 connections are open: a new one replaces the oldest
+//! Any program on this machine may connect, but it cannot delay the owner of the page. `hyper` runs
+//! in its own runtime with one thread, and passes a request on before its body arrives. The gate
+//! checks the head. Only then is the body read, up to 4096 bytes. Head and body each have a
+//! deadline of one second. At most 64 connections are open. A new connection replaces the oldest
 //! one that has not passed the gate.
 //!
-//! `hyper` is already in the command because of its stores. `tiny_http` reads a body before anyone
-//! can refuse it, has no deadlines, and takes a thread for each connection.
+//! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
+//! read a body before the gate could refuse it, has no deadlines, and uses a thread for each
+//! connection.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -36,7 +37,7 @@ use crate::page::Content;
 
 /// Largest number of open connections.
 const MOST_CONNECTIONS: usize = 64;
-/// Longest wait for the head of a request, including the next one on the same connection, and for
+/// Longest wait for the head of a request, also of the next request on the same connection, and for
 /// its body.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Longest body of a request, bytes.
@@ -56,7 +57,7 @@ const LEAVE: &str = "leave";
 const STOP: &str = "stop";
 
 const TEXT: &str = "text/plain; charset=utf-8";
-/// Headers of each reply. Because of `same-origin`, requests of the page send its origin.
+/// Headers of each reply. `same-origin` makes requests of the page state the page's origin.
 const HEADERS: [(&str, &str); 4] = [
     ("Cache-Control", "no-store"),
     ("Referrer-Policy", "same-origin"),
@@ -159,7 +160,7 @@ pub(super) fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Listens only on this machine. Also returns the port.
+/// Starts to listen, only for this machine. Also returns the port.
 pub(super) fn listen(port: u16) -> std::io::Result<(TcpListener, u16)> {
     let listener = TcpListener::bind(("127.0.0.1", port))?;
     listener.set_nonblocking(true)?;
@@ -222,14 +223,14 @@ async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
         let attending = attend(socket, Arc::clone(&desk), Arc::clone(&is_known));
         let task = tokio::spawn(attending).abort_handle();
         guests.push_back(Guest { task, is_known });
-        // Lets the new connection be looked at before the next one can take its place.
+        // Lets the new connection be processed before another one can replace it.
         tokio::task::yield_now().await;
     }
 }
 
 /// Answers the requests of a connection.
 async fn attend<A: Answers>(socket: TcpStream, desk: Arc<A>, is_known: Arc<AtomicBool>) {
-    // Without it, the system may hold a reply back for 40 ms.
+    // Otherwise the system may delay a reply by 40 ms.
     let _ = socket.set_nodelay(true);
     let service = service_fn(|request| async {
         let reply = desk.answer(request, &is_known).await;
@@ -279,7 +280,8 @@ impl<C: Content> Answers for Desk<C> {
     }
 }
 
-/// Reads a body that is short and arrives soon. A body that is not JSON counts as null.
+/// Reads the body of a request. It must be short and arrive within the deadline. A body that is not
+/// JSON counts as null.
 async fn read(body: Incoming) -> Result<Value, Refusal> {
     let too_long = (StatusCode::PAYLOAD_TOO_LARGE, "the request is too long");
     // The head states this length, so nothing of a long body is read.
@@ -303,8 +305,8 @@ fn reply(code: StatusCode, kind: &'static str, body: impl Into<Bytes>) -> Respon
     response
 }
 
-/// Returns the reply to a refused request. The connection is closed after it, because the body was
-/// not read.
+/// Returns the reply to a refused request. The connection is closed afterwards, because the body
+/// was not read.
 fn refused((code, why): Refusal) -> Response<Full<Bytes>> {
     let mut response = reply(code, TEXT, why);
     let close = HeaderValue::from_static("close");

@@ -42,12 +42,13 @@ impl Calibration {
     /// with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`LabError::Content`] if the file cannot be read, or does not hold a matrix of full rank.
+    /// [`LabError::Content`] if the file cannot be read, or does not contain a matrix of full rank.
     pub fn read(path: &Path) -> Result<Self, LabError> {
         in_calibration(path, text_of(path).and_then(|text| Self::from_text(path, &text)))
     }
 
-    /// Parses a text. `path` gives the format by its extension, and the name used in messages.
+    /// Parses the text of a calibration file. The extension of `path` determines the format, and
+    /// messages name `path`.
     ///
     /// # Errors
     /// The errors of [`Self::read`].
@@ -154,7 +155,7 @@ fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
 /// What is wrong with a calibration.
 type Problem = Box<dyn std::error::Error>;
 
-/// Adds the file and what a calibration looks like to an error.
+/// Adds the file's name and a description of the format to an error.
 fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, LabError> {
     let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
     let result = result.map_err(|problem| format!("{problem}; {advice}"));

@@ -1,8 +1,8 @@
-//! How much of a take is usable: the share in which the finger slides on its target, and the number
-//! of sweeps.
+//! Measures how much of a take is usable: the share of time during which the finger slides on its
+//! target, and the number of sweeps.
 //!
-//! A take's spectrum only uses the middles of its sweeps. There, the finger may be on target
-//! although it was lifted the rest of the time: a finger that was lifted from 3.2 s of 10 s left
+//! A take's spectrum uses only the middles of its sweeps. The finger may be on target there, but
+//! lifted for the rest of the time. For example, a finger that was lifted after 3.2 s of 10 s left
 //! three sweeps whose middles kept to the target.
 
 use htex_author::recording::Sums;
@@ -12,17 +12,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::guide::Guidance;
 
-/// Half the length of the moving averages by which a take is judged (50 ms in all), seconds.
+/// Half the length of the moving averages that judge a take, seconds. The whole length is 50 ms.
 const HALF_MEAN_S: f64 = 0.025;
-/// Lowest speed at which the finger counts as moving on its target, as a part of the target speed.
-/// The finger turns between sweeps, and in a stroke of minimum jerk (T. Flash, N. Hogan 1985,
-/// Journal of Neuroscience 5), as hands make them, the speed rises and falls all the time. At most
-/// 0.31 of such a stroke is within 10 % of a target speed, but 0.57 is above half of it.
+/// Lowest speed at which the finger counts as moving on its target, as a fraction of the target
+/// speed. A hand turns between strokes, and within a stroke it minimises jerk (T. Flash, N. Hogan
+/// 1985, Journal of Neuroscience 5). So its speed rises and falls all the time. At most 0.31 of
+/// such a stroke is within 10 % of a target speed, but 0.57 of it is above half the target speed.
 const LOWEST_SPEED: f64 = 0.5;
 /// Relative difference that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What a take must have to be accepted, in addition to keeping to its target.
+/// Requirements that a take must meet to be accepted, in addition to keeping to its target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Requirements {
@@ -37,15 +37,16 @@ pub struct Requirements {
 impl Requirements {
     /// No requirements.
     pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
-    /// Required share unless another one is given. It separates simulated takes of 10 s over 83 mm,
-    /// of five surfaces with four seeds each: complete takes had 0.65 (at 240 mm/s) to 0.95 (at 20
-    /// mm/s), and takes with the finger lifted for the second half had at most 0.47.
+    /// Required share if the user gives none. It was chosen with simulated takes of 10 s with
+    /// strokes of 83 mm, on five surfaces with four seeds each. Complete takes had shares of 0.65
+    /// (at 240 mm/s) to 0.95 (at 20 mm/s). Takes in which the finger was lifted for the second half
+    /// had at most 0.47.
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
-    /// Returns the number of sweeps that is required unless another one is given. It is half the
-    /// strokes that the target makes in a take of this length (seconds), not counting the first and
-    /// the last, which are cut off by the ends of the take. It is 0 without a target speed, because
-    /// then no strokes are shown.
+    /// Returns the required number of sweeps if the user gives none. It is half the number of
+    /// strokes that the target makes in a take of this length (seconds). The first and the last
+    /// stroke do not count, because the ends of the take cut them off. Without a target speed it is
+    /// 0, because then no strokes are shown.
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
@@ -84,18 +85,20 @@ impl Target {
 /// How much of a take is usable. Shares are parts of its length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share in which the finger slides on its target. Every condition is tested with means over 50
-    /// ms, if there is a target: friction of at least half its mean, speed from half the target to
-    /// the tolerance above it, and force within the tolerance.
+    /// Share of time in which the finger slides on its target. Three conditions must hold for means
+    /// over 50 ms: the friction is at least half its mean; the speed lies between half the target
+    /// speed and the tolerance above the target; and the force is within the tolerance of its
+    /// target. A condition without a target always holds.
     pub on_target: f64,
-    /// Share in which the finger slides.
+    /// Share of time in which the finger slides.
     pub sliding: f64,
-    /// Share in which the speed meets this condition. Absent without a target or a measured speed.
+    /// Share of time in which the speed meets its condition. Absent without a target or a measured
+    /// speed.
     pub speed: Option<f64>,
-    /// Share in which the normal force meets this condition. Absent without a target or a measured
-    /// force.
+    /// Share of time in which the normal force meets its condition. Absent without a target or a
+    /// measured force.
     pub force: Option<f64>,
-    /// Complete sweeps.
+    /// Number of complete sweeps.
     pub sweeps: usize,
     /// Start and end of the longest time off target, seconds. Absent if the whole take is on
     /// target.
@@ -103,7 +106,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Measures a recording. The targets are for speed (mm/s) and force (N).
+    /// Measures the coverage of a recording. The targets are for speed (mm/s) and force (N).
     pub(crate) fn measure(
         recording: &Recording,
         segments: &Segments,
@@ -127,7 +130,7 @@ impl Coverage {
         }
     }
 
-    /// Returns what the take lacks, as phrases.
+    /// Returns which requirements the take does not meet, as phrases.
     pub(crate) fn lacks(&self, required: Requirements) -> Vec<String> {
         let share = (self.on_target < required.on_target).then(|| self.share_lacking(required));
         let sweeps = (self.sweeps < required.sweeps as usize).then(|| {
@@ -155,8 +158,8 @@ impl Coverage {
     }
 }
 
-/// Returns for each sample whether the mean over 50 ms around it is within a range; `None` without
-/// a range or values.
+/// Returns, for each sample, whether the mean over 50 ms around it is within a range. Returns
+/// `None` without a range or values.
 fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
     let (values, [low, high]) = (values?, range?);
     let means = Sums::new(values.iter().copied());

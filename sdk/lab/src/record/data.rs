@@ -14,8 +14,8 @@ use crate::record::setup::LONGEST_S;
 const AXES: [&str; 7] =
     ["lateral", "lateral_x", "lateral_y", "signal", "signal_x", "signal_y", "signal_z"];
 
-/// How a take was recorded: the first line of a part file, and the object `take` in the JSON next
-/// to a recording.
+/// The header of a take, which states how the take was recorded. It is the first line of a part
+/// file, and the object `take` in the JSON next to a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct TakeHeader {
@@ -133,7 +133,7 @@ impl TakeData {
         self.frames() as f64 / self.header.rate_hz
     }
 
-    /// Returns whether the take has as many frames as its header demands.
+    /// Returns whether the take has as many frames as its header states.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.frames() >= self.header.frames()
@@ -144,8 +144,8 @@ impl TakeData {
         spread(&mut self.signals, frames);
     }
 
-    /// Appends interleaved rows of the tracker. Leaves out rows that are not finite or not later
-    /// than the row before, because a position cannot be interpolated across them.
+    /// Appends interleaved rows of the tracker. Leaves out rows that are not finite or that are not
+    /// later than the previous row, because positions could not be interpolated between them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
         // Without a tracker there are no columns, and chunks of 0 would panic.
         for row in rows.chunks_exact(self.tracker.len().max(1)) {
@@ -161,8 +161,8 @@ impl TakeHeader {
     /// Reads a header from JSON.
     ///
     /// # Errors
-    /// A text that says what is wrong: another version, other keys, or values that no session would
-    /// have written.
+    /// A text that states what is wrong: another version, unknown keys, or values that no session
+    /// would have written.
     pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {
@@ -182,8 +182,8 @@ impl TakeHeader {
         (self.seconds * self.rate_hz).round() as usize
     }
 
-    /// Returns what no session would have written, if there is anything. A part file may be
-    /// damaged, or may come from another program.
+    /// Returns a problem with the header, if it has values that no session would have written. A
+    /// part file may be damaged, or may come from another program.
     fn problem(&self) -> Option<&'static str> {
         let has_known_roles = |signals: &[(String, String)]| {
             let mut names: Vec<&str> = signals.iter().map(|(role, _)| &role[..]).collect();

@@ -1,4 +1,4 @@
-//! Formats and names of the files of takes, and outcomes of takes.
+//! Formats and names of the files of takes, and the outcomes of takes.
 
 use std::path::{Path, PathBuf};
 
@@ -35,16 +35,16 @@ impl clap::ValueEnum for Format {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// It kept to its target.
+    /// The take kept to its target.
     Kept,
-    /// It left its target; it was moved to the folder `rejected`.
+    /// The take left its target, and was moved to the folder `rejected`.
     Rejected,
-    /// It was cut short; it was moved to the folder `incomplete`.
+    /// The take was cut short, and was moved to the folder `incomplete`.
     Incomplete,
 }
 
 impl Format {
-    /// Refuses a sample rate that files of this format cannot have.
+    /// Returns an error if files of this format cannot have the sample rate.
     ///
     /// # Errors
     /// [`LabError::Setup`].
@@ -101,7 +101,7 @@ pub(crate) fn part_file(folder: &Path, name: &str, number: u32) -> PathBuf {
     folder.join(format!("{}.{PART}", stem(name, number)))
 }
 
-/// Refuses names that cannot be part of a file name on every system.
+/// Returns an error for a name that cannot be part of a file name on every system.
 pub(crate) fn check_name(name: &str) -> Result<(), LabError> {
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.');
     let is_sound = name.bytes().all(allowed) && !name.starts_with(['.', '-']);
@@ -152,7 +152,7 @@ pub(crate) fn part_files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(parts)
 }
 
-/// Returns the files of a folder; an empty list if there is no such folder.
+/// Returns the files of a folder, or an empty list if there is no such folder.
 fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let entries = match std::fs::read_dir(folder) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),

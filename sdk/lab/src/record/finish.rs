@@ -1,4 +1,4 @@
-//! Turns a part file into a recording, at the end of a take or after a program was killed.
+//! Converts a part file to a recording, at the end of a take or after a program was killed.
 
 use std::path::{Path, PathBuf};
 
@@ -20,11 +20,11 @@ pub struct TakeReport {
     pub number: u32,
     pub recorded_s: f64,
     pub verdict: Verdict,
-    /// Arguments with which `htex fit` reads it.
+    /// Arguments with which `htex fit` reads the recording.
     pub fit: Vec<String>,
 }
 
-/// Creates the error for a take that was cut short, with the file that holds its beginning.
+/// Adds to an error the file that contains the beginning of the take that was cut short.
 pub(crate) fn with_kept(error: LabError, kept: Option<TakeReport>) -> LabError {
     let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
     let kept = kept.map(|kept| kept.file);
@@ -35,7 +35,8 @@ pub(crate) fn with_kept(error: LabError, kept: Option<TakeReport>) -> LabError {
     }
 }
 
-/// Writes the recording of a part file and removes the part file; `None` if nothing was recorded.
+/// Writes the recording of a part file, and removes the part file. Returns `None` if nothing was
+/// recorded.
 pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, LabError> {
     let data = read_part(path)?.filter(|data| data.frames() > 0);
     let recorded = match data {
@@ -58,15 +59,16 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, L
             })
         }
     };
-    // Only now, when the recording is on disk. After a crash before this, the take is recovered.
+    // Removed only now, when the recording is on disk. If the program crashes before this, the take
+    // can be recovered.
     let name = path.file_name().unwrap_or_default();
     OwnFolder::new(folder).remove(Path::new(name)).writing(path)?;
     Ok(recorded)
 }
 
-/// Turns the takes that a killed program left in a folder into recordings, and returns them. A take
-/// that was already complete is judged as usual. Takes that another program is recording are left
-/// alone.
+/// Converts the takes that a killed program left in a folder to recordings, and returns them. A
+/// take that was already complete is judged as usual. Takes that another program is still recording
+/// are not changed.
 ///
 /// # Errors
 /// If the header of a part file is damaged, or a recording cannot be written.

@@ -1,5 +1,5 @@
-//! What the user sees while recording: the target's motion, a metronome, the own finger, and
-//! whether the force is right.
+//! Guidance for the user during a recording: the motion of the target, a metronome, the user's own
+//! finger, and whether the force is right.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 ///
 /// On the screen, the target is a square that moves back and forth over a stroke at the target
 /// speed. The metronome beats at each turn. The target already moves before the take begins, so
-/// that the finger can be following it by then.
+/// that the finger can follow it from the start.
 ///
 /// ```
 /// use htex_lab::record::{Force, Guidance};
@@ -49,9 +49,9 @@ pub enum Force {
 /// What a session is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// The user lifts the finger for another tare.
+    /// The user lifts the finger, so that the forces can be measured without it (tare).
     Lift,
-    /// The forces are measured without a finger.
+    /// The forces are measured without a finger (tare).
     Tare,
     /// A take is about to begin.
     Countdown,
@@ -69,13 +69,14 @@ pub struct Moment<'a> {
     pub elapsed_s: f64,
     /// Length of the phase, seconds.
     pub of_s: f64,
-    /// Normal force, newtons: the absolute mean of the last 50 ms. A take is judged by the same
-    /// means.
+    /// Normal force, newtons: the absolute value of the mean over the last 50 ms. The same means
+    /// are used to judge a take.
     pub force_n: Option<f64>,
     /// Position of the finger along the axis on which it moves most, mm from its lowest position so
     /// far.
     pub position_mm: Option<f64>,
-    /// Samples since the moment before, for each axis of the texture's signal, in its unit.
+    /// Samples since the previous moment, for each axis of the texture's signal, in the signal's
+    /// unit.
     pub texture: &'a [&'a [f64]],
 }
 
@@ -90,8 +91,8 @@ impl Phase {
         }
     }
 
-    /// Returns the time on the target's clock: seconds since the take began, negative during its
-    /// countdown. `None` in phases without motion.
+    /// Returns the time since the take began, seconds. It is negative during the countdown. Returns
+    /// `None` in phases without motion of the target.
     #[must_use]
     pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
         match self {
@@ -103,9 +104,9 @@ impl Phase {
 }
 
 impl Guidance {
-    /// Returns the target's position at a time, mm; `None` without a target speed. The motion
-    /// starts from 0 mm at 0 s and is mirrored in time around it, so that a countdown leads
-    /// smoothly into its take.
+    /// Returns the target's position at a time, mm, or `None` without a target speed. The target is
+    /// at 0 mm at 0 s. Before this, it moves as after it but backwards in time, so that the
+    /// countdown leads smoothly into the take.
     #[must_use]
     pub fn target_mm(&self, at_s: f64) -> Option<f64> {
         let way_mm = self.speed_mm_s? * at_s.abs();
@@ -113,8 +114,8 @@ impl Guidance {
         Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
     }
 
-    /// Returns how many times the target has turned until a time; the metronome beats at each turn.
-    /// `None` without a target speed.
+    /// Returns how many times the target has turned until a time, or `None` without a target speed.
+    /// The metronome beats at each turn.
     #[must_use]
     pub fn turns(&self, at_s: f64) -> Option<i64> {
         Some((self.speed_mm_s? * at_s / self.stroke_mm).floor() as i64)
@@ -149,7 +150,7 @@ pub(crate) struct FingerPath {
 }
 
 impl FingerPath {
-    /// Records a position along an axis, mm.
+    /// Updates the path with a position along an axis, mm.
     pub(crate) fn see(&mut self, axis: usize, at_mm: f64) {
         let [low, high, _] = self.axes[axis].unwrap_or([at_mm; 3]);
         self.axes[axis] = Some([low.min(at_mm), high.max(at_mm), at_mm]);

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::record::coverage::{Coverage, Target};
 use crate::record::data::{TakeData, TakeHeader, texture_axes};
 
-/// Time at each end of a take that a tracker may leave out, seconds.
+/// Time at the start and at the end of a take that the tracker need not cover, seconds.
 const UNTRACKED_S: f64 = 0.25;
 /// Longest time between two rows of a tracker, seconds, over which a position is still
 /// interpolated.
@@ -31,15 +31,15 @@ pub struct MeanRange {
 /// The judgement of a take.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Whether it kept to its target and meets all requirements.
+    /// Whether the take kept to its target and meets all requirements.
     pub kept: bool,
-    /// What it did wrong, as phrases.
+    /// Why the take was rejected, as phrases.
     pub reasons: Vec<String>,
     /// Scanning speed, mm/s.
     pub speed_mm_s: Option<MeanRange>,
     /// Normal force, newtons.
     pub force_n: Option<MeanRange>,
-    /// How much of it is usable. Absent if no texture can be read from it.
+    /// How much of the take is usable. Absent if no texture can be read from it.
     pub coverage: Option<Coverage>,
     /// Number of 0.2 s segments from which a texture would be read.
     pub segments: usize,
@@ -48,12 +48,13 @@ pub struct Verdict {
 }
 
 /// Judges a take. The mean, minimum and maximum of speed and normal force must be within the
-/// tolerance of their targets, measured over the middles of its sweeps (as `htex fit` chooses
-/// them).
+/// tolerance of their targets. They are measured over the middles of the sweeps, which are the same
+/// as in `htex fit`.
 ///
-/// Minimum and maximum are taken from means over 50 ms, as in [`htex_author::Spread`]: faster
-/// changes belong to the texture. Between sweeps the finger turns, so only the middles count. The
-/// take must also meet the requirements in its header ([`crate::record::Requirements`]).
+/// Minimum and maximum are those of means over 50 ms, as in [`htex_author::Spread`], because faster
+/// changes belong to the texture. Only the middles of sweeps count, because the finger turns
+/// between sweeps. The take must also meet the requirements in its header
+/// ([`crate::record::Requirements`]).
 #[must_use]
 pub fn judge(data: &TakeData) -> Verdict {
     let header = &data.header;
@@ -86,7 +87,7 @@ pub fn judge(data: &TakeData) -> Verdict {
         Err(error) => {
             let problem = error.to_string();
             verdict.findings.push(problem.clone());
-            // Without a target, a take from which no texture can be read is still kept.
+            // Without a target, a take is kept even if no texture can be read from it.
             if header.target_speed_mm_s.is_some() || header.target_force_n.is_some() {
                 verdict.reasons.push(problem);
             }
@@ -126,8 +127,8 @@ fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     }
 }
 
-/// Returns the finger's speed at each sample, mm/s, from the tracker if there is one, else from the
-/// source.
+/// Returns the finger's speed at each sample, mm/s. It comes from the tracker if there is one,
+/// otherwise from the source.
 fn speed(data: &TakeData) -> Option<Vec<f64>> {
     let at_s: Vec<f64> = (0..data.frames()).map(|i| i as f64 / data.header.rate_hz).collect();
     let tracked = |role: &str| {
@@ -192,7 +193,7 @@ fn measure(verdict: &mut Verdict, reading: &SegmentedTake, recording: &Recording
     verdict.findings = findings.map(|f| format!("{}: {}", f.code, f.message)).collect();
 }
 
-/// Returns what differs from a target by more than the tolerance, if anything does.
+/// Returns a phrase if a quantity differs from its target by more than the tolerance.
 fn differs(what: &str, unit: &str, target: Target, measured: MeanRange) -> Option<String> {
     let MeanRange { mean, min, max } = measured;
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
@@ -204,7 +205,7 @@ fn differs(what: &str, unit: &str, target: Target, measured: MeanRange) -> Optio
     })
 }
 
-/// Says which part of the take the tracker does not cover, if there is one.
+/// Returns a phrase if the tracker does not cover a part of the take.
 fn untracked(data: &TakeData) -> Option<String> {
     let time_s = data.tracker.first()?;
     let end_s = data.recorded_s();

@@ -1,5 +1,5 @@
-//! Live spectrum of what the finger feels now, computed by the code that reads textures from
-//! recordings.
+//! Computes a live spectrum of what the finger feels now, with the same code that reads textures
+//! from recordings.
 
 use std::collections::VecDeque;
 
@@ -9,20 +9,20 @@ use htex_author::{
 use htex_dsp::bands::{BAND_COUNT, BandBank};
 use htex_format::Quantity;
 
-/// Length of the signal behind the spectrum, seconds: three segments of 0.2 s, each overlapping the
-/// one before by half.
+/// Length of the signal from which the spectrum is computed, seconds. It has three segments of 0.2
+/// s, each overlapping the previous one by half.
 const LIVE_S: f64 = 0.4;
-/// Level of a zero magnitude, decibels.
+/// Level that stands for a magnitude of zero, decibels.
 const SILENCE_DB: f64 = -200.0;
-/// Part of a sum of squared magnitudes that is a squared RMS value. The Hann window spreads a
-/// sinusoid to 1.5 times its power.
+/// Factor that converts a sum of squared magnitudes to a squared RMS. The Hann window spreads a
+/// sinusoid, so that the sum has 1.5 times its power.
 const SQUARED_RMS: f64 = 1.0 / 3.0;
 
 /// The newest 0.4 s of a texture's signal.
 ///
-/// Its spectrum has the same numbers that `htex fit` would read from these samples, except that the
-/// setup's response is not applied: mean removed, Hann window, FFT, axes folded into one, root of
-/// the mean power.
+/// Its spectrum is the same as `htex fit` would compute from these samples, except that the
+/// response of the setup is not divided out. The steps are: remove the mean, apply a Hann window,
+/// compute the FFT, reduce the axes to one, and take the root of the mean power.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -80,8 +80,8 @@ impl LiveSignal {
         self.axes.clear();
     }
 
-    /// Returns the spectrum. `None` before there are 0.2 s of samples, and for samples that are not
-    /// a valid recording, such as infinite ones.
+    /// Returns the spectrum. Returns `None` if there are less than 0.2 s of samples, or if the
+    /// samples are not a valid recording, for example because one is infinite.
     #[must_use]
     pub fn spectrum(&self) -> Option<LiveSpectrum> {
         let axes = self.axes.iter().map(|axis| axis.iter().copied().collect());

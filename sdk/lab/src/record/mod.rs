@@ -1,28 +1,30 @@
-//! Guided recordings: reads a source, converts it to newtons, saves it to disk while it grows, and
-//! judges it against its target.
+//! Guided recordings: reads the signals of a source, converts them to newtons, saves them to disk
+//! at once, and judges each recording (a take) against its target.
 //!
-//! A take is recorded into a part file. Each second is appended and flushed to disk, so a program
-//! that is killed loses at most the current second, and [`recover`] turns the rest into a
-//! recording. A complete take is judged ([`judge`]). It is set aside and recorded again if the
-//! mean, minimum or maximum of speed or force differs from its target by more than the tolerance
-//! (10 % in the paper, Supplementary, "Texture recording"). The same happens if the finger slides
-//! on target for too short a time, or if there are too few sweeps ([`Requirements`]). The results are
-//! files that `htex fit` reads, with JSON next to them.
+//! A take is recorded into a part file. Each second is appended and flushed to disk. So a program
+//! that is killed loses at most the current second, and [`recover`] converts the rest to a
+//! recording. A complete take is judged ([`judge`]). If the mean, minimum or maximum of speed or
+//! force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
+//! "Texture recording"), the take is set aside and recorded again. The same happens if the finger
+//! slides on its target for too short a time, or if there are too few sweeps ([`Requirements`]).
+//! The results are recordings that `htex fit` reads, each with a JSON file.
 //!
 //! From a finger to a recording:
 //!
 //! 1. A [`htex_device::Input`] delivers frames of its channels: a card, a sound card, a library,
 //!    or a file ([`Replay`]).
-//! 2. `signals` applies the six-axis calibration, the column map and the tare. A tracker
-//!    ([`TrackerRows`]) has its own clock.
-//! 3. [`PartFile`]: a take grows in a file of hashed chunks. The same function (`finish`) makes
-//!    recordings of takes that are complete, that ended in an error, or that a killed program left.
-//! 4. [`judge`] compares speed and force over the segments that a fit would read with the target.
-//!    The JSON next to a take tells `htex compare`, `htex process` and the export of studies how to
-//!    read it.
-//! 5. `guide` holds what guides the finger, for each block: phase, force, position, samples. `live`
-//!    holds the newest 0.4 s. The terminal draws each moment. A page only stores it, and the thread
-//!    of its server computes the spectrum from a copy when the page asks.
+//! 2. `signals` converts these frames to forces: it applies the six-axis calibration, the column
+//!    map and the tare. A tracker ([`TrackerRows`]) has its own sample rate.
+//! 3. A take grows in a [`PartFile`], a file of hashed chunks. The same function (`finish`) makes
+//!    recordings from takes that are complete, that ended with an error, or that a killed program
+//!    left.
+//! 4. [`judge`] compares speed and force with their targets, over the segments that a fit would
+//!    read. The JSON next to a take tells `htex compare`, `htex process` and the export of studies
+//!    how to read the take.
+//! 5. `guide` has the state that guides the finger, for each block: phase, force, position and
+//!    samples. `live` has the newest 0.4 s of the signal. The terminal draws each state. A page
+//!    only stores it, and when the page asks, the thread of its server computes the spectrum from a
+//!    copy.
 
 mod calibration;
 mod coverage;

@@ -1,5 +1,5 @@
-//! Guidance on a web page ([`crate::page`]): the recording stores the newest state of a session,
-//! and the page asks for it.
+//! Shows the guidance on a web page ([`crate::page`]). The recording stores the newest state of a
+//! session, and the page requests it.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -20,11 +20,12 @@ use crate::record::live::{LiveSignal, LiveSpectrum};
 use crate::record::setup::{Setup, Tare};
 use crate::record::stored::kept_spectrum;
 
-/// Longest time for which a moment is extrapolated until the next one arrives, seconds.
+/// Longest time for which the page extrapolates the motion of a state until the next state arrives,
+/// seconds.
 const CONTINUED_S: f64 = 0.1;
 /// Step of the upper end of the spectrum's scale, decibels.
 const SCALE_STEP_DB: f64 = 10.0;
-/// Lowest upper end of the scale, decibels. Sensors do not measure anything below it.
+/// Lowest value of the scale's upper end, decibels. Sensors cannot measure anything below it.
 const LOWEST_TOP_DB: f64 = -100.0;
 /// Rate at which the scale follows a falling spectrum, dB/s.
 const SCALE_FALL_DB_S: f64 = 5.0;
@@ -43,7 +44,7 @@ struct SharedState {
     state: Mutex<State>,
 }
 
-/// What does not change during a session.
+/// The facts that do not change during a session.
 #[derive(Serialize)]
 struct About {
     title: String,
@@ -64,7 +65,7 @@ struct State {
     is_stopped: bool,
     now: Option<Now>,
     signal: LiveSignal,
-    /// Level of the last accepted take, decibels.
+    /// Spectrum of the last accepted take, decibels.
     kept_db: Option<Vec<f64>>,
     scale: Scale,
     takes: Vec<TakeLine>,
@@ -110,7 +111,7 @@ struct End {
     text: String,
 }
 
-/// What changes, in the form that the page receives.
+/// The changing state, in the form that the page receives.
 #[derive(Serialize)]
 struct Changing {
     /// `start`, a [`Phase`] or `end`.
@@ -118,7 +119,7 @@ struct Changing {
     number: u32,
     elapsed_s: f64,
     of_s: f64,
-    /// Time on the target's clock.
+    /// Time since the take began, seconds; negative during the countdown.
     motion_s: Option<f64>,
     position_mm: Option<f64>,
     force_n: Option<f64>,
@@ -189,7 +190,7 @@ impl GuidePage {
         self.shown.lock().is_stopped
     }
 
-    /// Stores a moment.
+    /// Stores the newest state of the session.
     pub fn show(&self, moment: &Moment<'_>) {
         let mut state = self.shown.lock();
         let before = state.now.map(|now| (now.phase, now.number));
@@ -212,7 +213,7 @@ impl GuidePage {
     /// Shows a completed take.
     pub fn told(&self, take: &TakeReport) {
         let about = &self.shown.session;
-        // Read before the lock is taken, because the recording waits for the lock.
+        // Read before the lock is taken, because the recording would wait for the lock.
         let kept = match take.outcome {
             Outcome::Kept => kept_spectrum(&self.shown.folder, &about.title, about.quantity),
             Outcome::Rejected | Outcome::Incomplete => None,
@@ -272,7 +273,7 @@ impl SharedState {
             motion_s,
             position_mm: now.and_then(|now| now.position_mm),
             force_n,
-            // In a phase without motion there is no finger on the surface.
+            // In a phase without motion, the finger is not on the surface.
             force: self.guidance.force(force_n.filter(|_| motion_s.is_some())),
             frequency_hz,
             level_db: level_db.iter().copied().map(hundredths).collect(),
@@ -320,7 +321,7 @@ impl Content for SharedState {
 
 impl Scale {
     /// Returns the upper end of the scale, a multiple of 10 dB. It rises with the spectrum at once
-    /// and falls slowly. `None` before there is a spectrum.
+    /// and falls slowly. Returns `None` as long as there is no spectrum.
     fn follow(&mut self, highest_db: f64) -> Option<f64> {
         let fallen_db = self.top_db - SCALE_FALL_DB_S * self.at.elapsed().as_secs_f64();
         *self = Self { top_db: fallen_db.max(highest_db), at: Instant::now() };

@@ -1,9 +1,10 @@
-//! The part file of a take while it is recorded: append-only, and flushed to disk every second.
+//! The part file, which stores a take while it is recorded. It is only appended to, and flushed to
+//! disk every second.
 //!
-//! The first line is the header as JSON. Chunks follow it. A chunk has a byte for its kind, the
-//! number of bytes (u32), that many bytes of f64 values, and the first eight bytes of the BLAKE3
-//! hash of all of these. Everything is little-endian. For a reader, the file ends at the first
-//! chunk that a crash left incomplete or damaged.
+//! The first line is the header as JSON. Chunks follow it. A chunk has one byte for its kind, the
+//! number of data bytes (u32), the data as f64 values, and the first eight bytes of the BLAKE3 hash
+//! of all of these. All numbers are little-endian. A reader ignores everything from the first
+//! incomplete or damaged chunk on, which a crash may have left.
 
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
@@ -15,11 +16,11 @@ use crate::error::LabError;
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::files;
 
-/// Kind of a chunk that holds frames.
+/// Kind of a chunk that contains frames.
 const FRAMES: u8 = b'F';
-/// Kind of a chunk that holds the tracker's rows. Length of a chunk's hash, bytes.
+/// Kind of a chunk that contains rows of the tracker.
 const TRACKER: u8 = b'T';
-/// Bytes of the hash of a chunk.
+/// Length of a chunk's hash, bytes.
 const HASH: usize = 8;
 /// Longest header, bytes.
 const MOST_HEADER: usize = 1 << 20;
@@ -32,7 +33,7 @@ pub struct PartFile {
     frames: Vec<f64>,
     rows: Vec<f64>,
     waiting: usize,
-    /// Number of samples in a second.
+    /// Number of values (frames times signals) in one second.
     second: usize,
 }
 
@@ -112,16 +113,16 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
     bytes.extend(&hash.as_bytes()[..HASH]);
 }
 
-/// Reads all whole chunks of a part file. Does not follow links. `None` if the header is
+/// Reads all whole chunks of a part file. Does not follow links. Returns `None` if the header is
 /// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`LabError::Content`] if it cannot be read or is not a part file; [`LabError::Busy`] while
+/// [`LabError::Content`] if the file cannot be read or is not a part file. [`LabError::Busy`] while
 /// another program writes to it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.map_err(ContentError::in_file(path))?;
-    // A `PartFile` holds the lock as long as it is written to.
+    // The program that writes a part file holds its lock.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         return Err(LabError::busy(path, "recording into it"));
     }

@@ -1,5 +1,5 @@
 //! Reads a source in blocks: the values of its signals, and the tracker's rows up to the same time.
-//! Runs the phases of a session block by block, and computes what the user sees.
+//! Also runs the phases of a session block by block, and computes the state that the user sees.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -66,14 +66,15 @@ impl Reader {
         self.read as f64 / self.source.stream().rate_hz
     }
 
-    /// Reads the next block of at most `most` frames; `None` if nothing arrived for a short time.
+    /// Reads the next block of at most `most` frames. Returns `None` if nothing arrived for a short
+    /// time.
     ///
     /// # Errors
     /// The errors of the source and of the tracker, [`LabError::Silent`], and
     /// [`LabError::Ended`].
     pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, LabError> {
         let (rate_hz, width) = (self.source.stream().rate_hz, self.source.stream().channels.len());
-        // At least one frame, because a block of a rate below 50 Hz would have none.
+        // At least one frame, because at a sample rate below 50 Hz a block would have none.
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
         self.samples.resize(block * width, 0.0);
         let since = *self.since.get_or_insert_with(Instant::now);
@@ -110,8 +111,8 @@ impl Block {
         (0..rows).flat_map(|row| self.values.iter().map(move |values| values[row])).collect()
     }
 
-    /// Returns the tracker's interleaved rows with times since `begin_s`. Earlier rows are left
-    /// out.
+    /// Returns the interleaved rows of the tracker from `begin_s` on, with times that count from
+    /// `begin_s`.
     pub(crate) fn rows_since(&self, header: &TakeHeader, begin_s: f64) -> Vec<f64> {
         let mut kept = Vec::new();
         let rows = self.rows.chunks_exact(header.tracker.len() + 1);
@@ -122,7 +123,7 @@ impl Block {
         kept
     }
 
-    /// Refuses values that are not finite.
+    /// Returns an error if a value is not finite.
     ///
     /// # Errors
     /// [`LabError::NotFinite`].
@@ -142,8 +143,7 @@ impl Block {
 
 pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), LabError> + 'a;
 
-/// Length of the mean by which the force is shown, seconds. A take is judged by means of the same
-/// length.
+/// Length of the mean for the displayed force, seconds. Means of the same length judge a take.
 const FORCE_S: f64 = 0.05;
 
 /// Whether a session continues.
@@ -151,16 +151,16 @@ const FORCE_S: f64 = 0.05;
 pub enum Next {
     /// The session continues.
     Go,
-    /// The session ends; what was recorded is kept.
+    /// The session ends. What was recorded so far is kept.
     Stop,
 }
 
-/// A phase to be read.
+/// A phase of a session that is to be read.
 pub(crate) struct Span {
     pub(crate) phase: Phase,
     /// Number of the take.
     pub(crate) number: u32,
-    /// Its length, seconds.
+    /// Length of the phase, seconds.
     pub(crate) of_s: f64,
 }
 
@@ -207,7 +207,7 @@ impl Phases {
             };
             let values = &block.values;
             done += values.first().map_or(0, Vec::len) as u64;
-            // Stored before it is shown, so that a stop does not lose this block.
+            // The block is stored before it is shown, so that it is not lost if the session stops.
             take(&block)?;
             let texture: Vec<&[f64]> = self.texture.iter().map(|at| &values[*at][..]).collect();
             let moment = Moment {
@@ -226,15 +226,16 @@ impl Phases {
         Ok(())
     }
 
-    /// Returns the force of the last 50 ms. The sign is dropped, because a sensor or a recording
-    /// may count pressing as negative.
+    /// Returns the absolute value of the mean force over the last 50 ms. The sign is dropped,
+    /// because for some sensors and recordings a pressing force is negative.
     fn force(&mut self, values: &[Vec<f64>]) -> Option<f64> {
         let normal = self.reader.inputs.signals.position(Role::Normal)?;
         self.force.push(&values[normal]);
         Some(self.force.mean().abs())
     }
 
-    /// Returns the finger's position, from the tracker if there is one, else from the source.
+    /// Returns the finger's position. It comes from the tracker if there is one, otherwise from the
+    /// source.
     fn position(&mut self, block: &Block) -> Option<f64> {
         for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
             let own = self
@@ -260,7 +261,7 @@ impl Phases {
     }
 }
 
-/// Mean of the newest values.
+/// The mean of the newest values.
 struct RunningMean {
     newest: VecDeque<f64>,
     most: usize,

@@ -11,8 +11,8 @@ use htex_device::{
     InputStream, Setting, SettingKind, Settings,
 };
 
-/// The input adapter for files: every file that [`read_channels`] reads. Its channels are all
-/// columns except the time.
+/// The input adapter that replays files, in all formats that [`read_channels`] reads. The channels
+/// are all columns except the time.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Replay;
 
@@ -70,7 +70,7 @@ impl Adapter for Replay {
 }
 
 impl Replay {
-    /// Opens a file. With `fast`, it is replayed without waiting.
+    /// Opens a file. If `fast` is true, it is replayed without waiting.
     ///
     /// # Errors
     /// The errors of [`Adapter::open_input`].
@@ -94,7 +94,8 @@ struct Player {
 }
 
 impl Player {
-    /// Returns how many frames are due by now, at most `most`. Waits for the first one.
+    /// Waits until at least one frame is due. Returns the number of frames that are due by then, at
+    /// most `most`.
     fn due(&self, begun: Instant, most: usize, timeout: Duration) -> usize {
         if !self.is_paced {
             return most;

@@ -61,13 +61,13 @@ impl Session {
         Ok(Self { setup, phases: Phases::new(reader) })
     }
 
-    /// Records takes until one keeps to its target, and returns that take. Calls `watch` for each
+    /// Records takes until one keeps to its target, and returns this take. Calls `watch` for each
     /// block of samples, and `told` for each completed take.
     ///
     /// # Errors
-    /// [`LabError::OffTarget`] if no take kept to its target; [`LabError::Left`] if `watch`
-    /// ended the session; and errors of the source, after which the folder `incomplete` holds what
-    /// was recorded.
+    /// [`LabError::OffTarget`] if no take kept to its target. [`LabError::Left`] if `watch` ended
+    /// the session. Errors of the source: what was recorded before such an error is in the folder
+    /// `incomplete`.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,

@@ -15,16 +15,17 @@ pub(crate) const LONGEST_S: f64 = 3600.0;
 /// Settings of a recording session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
-    /// Folder for the takes; it is created. Name of the takes, which becomes part of their file
-    /// names.
+    /// Folder for the takes. It is created if it does not exist.
     pub folder: PathBuf,
-    /// Name of the takes, a part of their files' names.
+    /// Name of the takes. It becomes a part of their file names.
     pub name: String,
     /// Length of a take, seconds; at most an hour.
     pub seconds: f64,
-    /// Seconds before each take in which the finger can find its motion.
+    /// Length of the countdown before each take, seconds. During this time the finger can start to
+    /// follow the target.
     pub countdown_s: f64,
-    /// When to measure the mean forces over a second without a finger, which are then subtracted.
+    /// When to measure the mean forces without a finger, over one second. These means are then
+    /// subtracted.
     pub tare: Tare,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
@@ -33,7 +34,7 @@ pub struct Setup {
     /// Allowed relative difference of the mean, minimum and maximum from the target; 0.1 in the
     /// paper.
     pub tolerance: f64,
-    /// What a take must have to be accepted.
+    /// Requirements that a take must meet to be accepted.
     pub required: Requirements,
     /// Largest number of takes that are tried.
     pub attempts: u32,
@@ -53,12 +54,12 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. From the second take on, the user has the length of a countdown to lift
-    /// the finger first.
+    /// Before each take. From the second take on, the user first gets a countdown to lift the
+    /// finger.
     Each,
 }
 
-/// Refuses values that are out of range; `rate_hz` is the source's rate.
+/// Returns an error if a value is out of range. `rate_hz` is the sample rate of the source.
 pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), LabError> {
     files::check_name(&setup.name)?;
     let refuse = |what, value: f64, allowed| {

@@ -88,8 +88,8 @@ impl Signals {
         &self.offsets
     }
 
-    /// Subtracts these means from now on, instead of earlier ones. An empty list subtracts nothing.
-    /// Positions and speeds are not changed.
+    /// Sets the means that are subtracted from now on. They replace earlier ones, and an empty list
+    /// subtracts nothing. Positions and speeds are not changed.
     pub fn tare(&mut self, means: &[f64]) {
         let moves = |role: &Role| matches!(role, Role::Speed | Role::X | Role::Y);
         let pairs = self.roles.iter().zip(means);
@@ -105,8 +105,7 @@ impl Signals {
                 let mut volts = [0.0; AXES];
                 volts.copy_from_slice(&frame[AXES * sensor..AXES * (sensor + 1)]);
                 let forces = calibration.forces(volts);
-                // The forces end after six axes, so the channels of the next sensor stay as they
-                // are.
+                // There are only six forces, so the channels of the next sensor stay as they are.
                 for (channel, force) in channels[AXES * sensor..].iter_mut().zip(forces) {
                     channel.push(force);
                 }

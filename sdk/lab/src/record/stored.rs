@@ -1,4 +1,4 @@
-//! How to read a take's recording, from the JSON next to it.
+//! Finds out how to read the recording of a take, from the JSON next to it.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::record::files::{self, Outcome};
 use crate::record::live::LiveSpectrum;
 use crate::record::write::reading;
 
-/// Largest JSON file that is read, bytes. The JSON of a take has a few thousand.
+/// Largest JSON file that is read, bytes. The JSON of a take has a few thousand bytes.
 pub(crate) const MOST_BYTES: u64 = 1 << 20;
 
 /// A recording made by `htex record` or in a study, with the settings to read it: columns, rate,
@@ -29,8 +29,8 @@ pub struct KnownTake {
 }
 
 impl KnownTake {
-    /// Finds a take by its recording, or by the JSON next to it. `None` if there is no such JSON,
-    /// or if it belongs to a recording in another format.
+    /// Finds a take. `file` is its recording, or the JSON next to it. Returns `None` if there is no
+    /// such JSON, or if the JSON belongs to a recording in another format.
     ///
     /// # Errors
     /// [`LabError::Content`] if the JSON describes a take but has another version or unknown
@@ -64,8 +64,8 @@ impl KnownTake {
         Ok(Some(Self { recording, settings }))
     }
 
-    /// Returns the take's settings, completed by those given settings that do not concern its
-    /// columns.
+    /// Returns the take's settings, together with those of the given settings that do not concern
+    /// its columns.
     #[must_use]
     pub fn with_given(self, given: &ReadingSettings) -> ReadingSettings {
         let given = given.clone();
@@ -85,7 +85,7 @@ impl KnownTake {
 /// describe a take. A header of another version is [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
-    // A longer file is cut, which makes it invalid, and so it counts as no take.
+    // A longer file is cut off. It is then invalid JSON and does not count as a take.
     open_regular(beside)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
     let mut json = serde_json::from_slice::<Value>(&bytes).unwrap_or_default();
     let take = json.get_mut("take").map(Value::take);
@@ -113,7 +113,7 @@ fn tracker(recording: &Path) -> Option<PathBuf> {
     tracker.is_file().then_some(tracker)
 }
 
-/// The parts of the JSON next to a recording that are needed here.
+/// The needed parts of the JSON next to a recording.
 #[derive(Deserialize)]
 struct Beside {
     outcome: Outcome,
@@ -121,8 +121,8 @@ struct Beside {
 }
 
 /// Returns the texture spectrum of the newest accepted take with this name, as `htex fit` would
-/// read it. `None` if the folder has no such take of this quantity, or if its files can no longer
-/// be read.
+/// read it. Returns `None` if the folder has no such take of this quantity, or if its files cannot
+/// be read any more.
 pub(crate) fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
     let number = files::kept_number(folder, name)?;
     let stem = files::stem(name, number);

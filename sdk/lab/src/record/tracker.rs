@@ -1,4 +1,4 @@
-//! Tracks the finger's position with a tracker that has its own sample rate.
+//! Reads the finger's position from a tracker, which has its own sample rate.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -18,8 +18,9 @@ pub trait TrackerRows: Send {
     /// Role and unit of each signal, without the time.
     fn signals(&self) -> Vec<(String, String)>;
 
-    /// Appends the rows that have arrived: the time on the source's clock (s), which must ascend,
-    /// then each signal. `now_s` is the time of the source's last sample.
+    /// Appends the rows that have arrived since the last call. A row has the time on the source's
+    /// clock (s), then a value for each signal. Times must ascend. `now_s` is the time of the
+    /// source's last sample.
     ///
     /// # Errors
     /// If the tracker delivers something that is not a position.
@@ -30,7 +31,7 @@ pub trait TrackerRows: Send {
     fn restart(&mut self);
 }
 
-/// Replays a tracker's file on the source's clock, which starts at 0 s.
+/// A tracker that replays a file, on the clock of the source, which starts at 0 s.
 #[derive(Debug)]
 pub struct TableTracker {
     signals: Vec<(String, String)>,
@@ -40,7 +41,7 @@ pub struct TableTracker {
 }
 
 impl TableTracker {
-    /// Reads a file with positions or speeds. Its first row is taken to be at 0 s.
+    /// Reads a file with positions or speeds. Its first row gets the time 0 s.
     ///
     /// # Errors
     /// If the file cannot be read, or has neither positions nor speeds.
@@ -85,7 +86,7 @@ impl TrackerRows for TableTracker {
 
 /// Longest line of a tracker, bytes: two numbers and anything else in the line.
 const MOST_LINE_BYTES: usize = 4096;
-/// Largest number of waiting lines: a minute at 1 kHz.
+/// Largest number of lines that wait to be read. It is a minute at 1 kHz.
 const MOST_LINES: usize = 60_000;
 
 /// A tracker that sends lines `x_mm y_mm`, for example through a pipe or a serial port. Each row
@@ -100,12 +101,12 @@ pub struct LineTracker {
 impl LineTracker {
     /// Reads lines in its own thread, which ends with the input.
     pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
-        // Bounded, so that a tracker that nobody reads does not fill the memory.
+        // The queue is limited, so that a tracker that nobody reads does not fill the memory.
         let (sender, lines) = sync_channel(MOST_LINES);
         std::thread::spawn(move || {
             for (index, line) in bounded_lines(input, MOST_LINE_BYTES).enumerate() {
-                // A failed read is passed on as a line. It is not a position either, so it is
-                // reported as one.
+                // The error of a failed read is passed on as a line. It is not a position, so it is
+                // reported as an invalid line.
                 let line = line.unwrap_or_else(|error| error.to_string());
                 if sender.send((Instant::now(), index + 1, line)).is_err() {
                     return;

@@ -13,11 +13,11 @@ use crate::record::data::{TakeData, TakeHeader};
 use crate::record::files::{self, Format, Outcome};
 use crate::record::judge::Verdict;
 
-/// The files that were written for a take. Arguments with which `htex fit` reads it.
+/// The files that were written for a take.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct TakeFiles {
     pub(crate) recording: PathBuf,
-    /// Arguments of `htex fit` that read it.
+    /// Arguments with which `htex fit` reads the recording.
     pub(crate) fit: Vec<String>,
 }
 
@@ -46,9 +46,9 @@ pub(crate) fn write_take(
     })
 }
 
-/// Writes a recording, the tracker's rows and the JSON into a folder `inside` the user's folder.
-/// Each file is written under a temporary name and then renamed. `beside` receives the arguments
-/// with which `htex fit` reads the recording.
+/// Writes a recording, the tracker's rows and the JSON into the folder `inside`, which lies in the
+/// user's folder. Each file is written under a temporary name and then renamed. `beside` gets the
+/// arguments with which `htex fit` reads the recording, and returns the JSON.
 ///
 /// # Errors
 /// [`LabError::File`].
@@ -79,12 +79,12 @@ pub(crate) fn write_signals(
         Format::Npy => npy(data, file),
         Format::Wav => wav(data, file),
     })?;
-    // The JSON comes last, so that it never describes a recording that is not there.
+    // The JSON is written last, so that it never describes a recording that does not exist.
     put(&inside.join(format!("{stem}.json")), &|file| file.write_all(beside.as_bytes()))?;
     Ok(TakeFiles { recording, fit })
 }
 
-/// Returns the flags for what the format itself does not state.
+/// Returns the flags of `htex fit` for facts that the file format itself does not state.
 fn flags(header: &TakeHeader) -> Vec<String> {
     let mut flags = Vec::new();
     let (map, rate_hz) = reading(header);

@@ -13,14 +13,14 @@ use crate::error::LabError;
 
 /// The final part of a window, relative to its length, that must be quiet.
 const END: f64 = 0.05;
-/// Limits for a quiet end (RMS): relative to the largest output, and relative to the noise before
-/// the trigger.
+/// Limits for a quiet end (RMS): first relative to the largest output, then relative to the noise
+/// before the trigger.
 const QUIET: f64 = 0.01;
 const OVER_NOISE: f64 = 3.0;
 
-/// Returns whether a hit's windowed output has not died out at the end of its window. Its end must
-/// exceed both 1 % of its largest value and three times the noise of the `before` samples before
-/// the trigger (RMS).
+/// Returns whether a hit's windowed output has not died out at the end of its window. This is the
+/// case if the RMS of the end exceeds 1 % of the largest value, and also three times the RMS of the
+/// noise in the `before` samples before the trigger.
 fn outlasts(output: &[f64], before: usize) -> bool {
     let end = ((END * output.len() as f64) as usize).max(1);
     let tail = spread(&output[output.len() - end.min(output.len())..]);
@@ -47,7 +47,7 @@ pub(crate) fn cut(
     })
 }
 
-/// Counts the usable hits or windows. Refuses fewer than two.
+/// Counts the usable hits or windows. Returns an error if there are fewer than two.
 pub(crate) fn count_used(
     records: &[Record],
     cuts: &[Vec<Cut>],
@@ -98,15 +98,15 @@ pub(crate) fn average(
     (spectra, outlasting)
 }
 
-/// Returns the largest distance from rest. The channel is divided by it so that no power overflows
-/// or underflows.
+/// Returns the largest deviation of a channel from rest, over all records. The channel is divided
+/// by it, so that no power overflows or underflows.
 pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
     let largest = records.iter().map(|record| Baseline::find(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)
 }
 
-/// Averaged auto and cross spectra of input and output at each bin. A common factor is left out,
-/// because only ratios are used (Bendat & Piersol, section 11.5).
+/// Averaged auto spectra and cross spectrum of input and output at each bin (Bendat & Piersol,
+/// section 11.5). A common factor is left out, because only ratios are used.
 #[derive(Debug)]
 pub(crate) struct Spectra {
     fft: RealFft,

@@ -1,7 +1,7 @@
 //! Estimators of a response from averaged spectra.
 //!
-//! Total least squares (`Hv`) depends on units, so each channel is first divided by the root of its
-//! power in the band.
+//! The result of total least squares (`Hv`) depends on the units of the channels. So each channel
+//! is first divided by the root of its power in the band.
 
 use std::fmt;
 
@@ -15,15 +15,16 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Estimator {
-    /// `Gxy / Gxx`: noise in the output does not bias it, noise in the input makes it too low
-    /// (Bendat & Piersol, chapter 6).
+    /// `Gxy / Gxx`. Noise in the output does not bias this estimate; noise in the input makes it
+    /// too low (Bendat & Piersol, chapter 6).
     H1,
-    /// `Gyy / Gyx`: noise in the input does not bias it, noise in the output makes it too high.
+    /// `Gyy / Gyx`. Noise in the input does not bias this estimate; noise in the output makes it
+    /// too high.
     H2,
     /// Total least squares (Rocklin, Crowley and Vold, 1985), for noise in both channels. Each
     /// channel is first divided by the root of its power in the band, so that the result does not
-    /// depend on units. It is unbiased if both channels have white noise that is equal relative to
-    /// that power.
+    /// depend on units. The estimate is unbiased if both channels have white noise, and if this
+    /// noise is equal in both relative to the channel's power.
     Hv,
 }
 
@@ -48,7 +49,7 @@ pub(crate) struct Bin {
 }
 
 impl Bin {
-    /// Returns the magnitude of the response; 0 where the estimator is not defined, for example
+    /// Returns the magnitude of the response. It is 0 if the estimator is not defined, for example
     /// without any input.
     pub(crate) fn magnitude(&self, estimator: Estimator) -> f64 {
         let cross = self.gxy.norm_sqr().sqrt();
@@ -67,7 +68,8 @@ impl Bin {
         let unit = (y / x).sqrt();
         let (a, b, c) = (self.gxx / x, self.gyy / y, cross / (x * y).sqrt());
         let root = libm::hypot(b - a, 2.0 * c);
-        // Both forms are equal. The one chosen adds instead of subtracting, which loses no digits.
+        // Both forms are mathematically equal. The chosen one adds instead of subtracting, so it
+        // loses no digits.
         let slope = if b >= a { (b - a + root) / (2.0 * c) } else { 2.0 * c / (a - b + root) };
         slope * unit
     }
@@ -92,8 +94,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units. Without noise, each one is
-        /// the gain.
+        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units. Without noise, all three
+        /// are the gain.
         #[test]
         fn estimators_are_ordered(
             gxx in 1e-6..1e6_f64, gyy in 1e-6..1e6_f64, coherence in 0.01..1.0_f64, phase in -3.0..3.0_f64,

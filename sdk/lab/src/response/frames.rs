@@ -1,4 +1,4 @@
-//! Windows for hits and for continuous drives.
+//! Cuts recordings into windows, and weights their samples, for hits and for continuous drives.
 
 use std::f64::consts::PI;
 
@@ -8,19 +8,20 @@ use super::record::Channel;
 use super::record::Record;
 use super::settings::{HitSettings, ResponseSettings};
 
-/// Level of a window's drive (RMS), relative to the strongest window, below which it counts as
-/// silent.
+/// If the RMS of a window's drive, relative to the strongest window, is below this value, the
+/// window counts as silent.
 const SILENT: f64 = 0.1;
 
 /// Cuts a continuous drive into windows of `len` samples with half overlap.
 pub(crate) fn windows(record: &Record, len: usize, settings: &ResponseSettings) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
     let overloads = [
-        // A square drive repeats its extremes, so only a given limit counts for the input.
+        // A square wave repeats its extreme values, so for the input only a given limit counts.
         Overloads::find_given(record, Channel::Input, settings.input_limit),
         Overloads::find(record, Channel::Output, settings.output_limit),
     ];
-    // The first start that is too late, so that a record of exactly one window has one.
+    // The first start that is too late. It is exclusive, so a record of exactly one window has one
+    // window.
     let last = (input.len() + 1).saturating_sub(len);
     let starts = || (0..last).step_by((len / 2).max(1));
     let rms: Vec<f64> = starts().map(|start| spread(&input[start..start + len])).collect();
@@ -89,7 +90,7 @@ impl Weights {
         Self { input, output, rest: before }
     }
 
-    /// Returns the weighted samples of a window, divided by `scale`.
+    /// Returns the samples of a window, weighted and divided by `scale`.
     pub(crate) fn apply(
         &self,
         record: &Record,
@@ -102,14 +103,15 @@ impl Weights {
             Channel::Input => &self.input,
             Channel::Output => &self.output,
         };
-        // Without samples before the trigger, use the first sample, which is at rest or nearly so.
+        // Without samples before the trigger, uses the first sample, which is nearly at rest.
         let rest = mean(&values[..self.rest.clamp(1, values.len())]);
         let weighted = values.iter().zip(weights);
         weighted.map(|(value, weight)| weight * (value - rest) / scale).collect()
     }
 }
 
-/// Returns 1 up to `end_s`, then half a cosine that falls to 0 over a quarter of that time.
+/// Returns the weight of the force window at a time after the trigger. It is 1 up to `end_s`, and
+/// then falls to 0 over a quarter of this time, as half a cosine.
 fn force(after_s: f64, end_s: f64) -> f64 {
     let faded = ((after_s - end_s) / (0.25 * end_s)).clamp(0.0, 1.0);
     0.5 + 0.5 * libm::cos(PI * faded)

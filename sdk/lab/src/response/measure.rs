@@ -1,7 +1,9 @@
-//! Measures a response from records: the response, its largest magnitude, and what limits it.
+//! Measures a frequency response from records: the response itself, its largest magnitude, and
+//! warnings about its accuracy.
 //!
-//! The largest magnitude is found between the points of the grid in 1/magnitude², which is a parabola
-//! for a resonance. The response file only holds the grid, since its readers interpolate.
+//! The largest magnitude may lie between two frequencies of the grid. It is interpolated in
+//! 1/magnitude², which is a parabola for a resonance. The response file contains only the grid,
+//! because its readers interpolate.
 
 use htex_author::recording::SetupResponse;
 use htex_base::finding::Hint;
@@ -20,7 +22,7 @@ use crate::error::LabError;
 /// - A setting is out of range.
 /// - There are no records, they have different sample rates, or a record is shorter than a window.
 /// - There are no hits, or fewer than two usable ones.
-/// - A magnitude is out of the range that a response file may hold.
+/// - A magnitude is out of the range that a response file may contain.
 pub fn measure(
     records: &[Record],
     settings: &ResponseSettings,
@@ -34,7 +36,7 @@ pub fn measure(
     let (spectra, outlasting) = average(records, &cuts, len, settings);
     let resolution_hz = rate_hz / len as f64;
     let bins = band(settings, resolution_hz, spectra.gxx.len())?;
-    // `average` has divided both channels by their scales. This factor undoes it.
+    // `average` has divided both channels by their scales. This factor undoes the division.
     let scale = scale_of(records, Channel::Output) / scale_of(records, Channel::Input);
     let in_band = in_band(&spectra, &bins);
     let mut measured = MeasuredResponse {
@@ -121,7 +123,7 @@ fn unwrapped(phases: impl Iterator<Item = f64>) -> Vec<f64> {
     phases.map(&mut follow).collect()
 }
 
-/// Smallest and largest magnitude that a response file may hold.
+/// Smallest and largest magnitude that a response file may contain.
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
 
@@ -148,20 +150,19 @@ pub struct MeasuredResponse {
     pub phase_rad: Vec<f64>,
     /// Coherence, 0 to 1.
     pub coherence: Vec<f64>,
-    /// Relative standard deviation of the magnitude, at most 1:
-    /// `sqrt(1 - coherence) / sqrt(2 coherence averages)` (Bendat & Piersol, chapter 9). It only
-    /// covers random errors.
+    /// Relative standard deviation of the magnitude, at most 1: `sqrt(1 - coherence) / sqrt(2
+    /// coherence averages)` (Bendat & Piersol, chapter 9). It covers only random errors.
     pub relative_error: Vec<f64>,
-    /// The largest magnitude; `None` if it is at an edge of the band.
+    /// The largest magnitude and its frequency. `None` if it lies at an edge of the band.
     pub peak: Option<Peak>,
-    /// What limits the result, as full sentences.
+    /// Warnings about the accuracy of the result, as full sentences.
     pub warnings: Vec<String>,
 }
 
 impl MeasuredResponse {
-    /// Converts the response to the form in which recordings are divided by it and scenes
-    /// compensate for it. Its [`write_csv`](SetupResponse::write_csv) writes the file that both
-    /// read.
+    /// Converts the response to the type with which recordings are corrected and scenes are
+    /// compensated. [`write_csv`](SetupResponse::write_csv) writes the file that recordings and
+    /// scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {
         SetupResponse {
@@ -171,7 +172,7 @@ impl MeasuredResponse {
         }
     }
 
-    /// Checks the magnitudes and adds what follows from them.
+    /// Checks the magnitudes, and adds the values that are computed from them.
     pub(crate) fn finish(&mut self, settings: &ResponseSettings) -> Result<(), LabError> {
         let is_valid =
             |magnitude: f64| magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude);
@@ -209,8 +210,8 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Finds the peak. `None` if the magnitude is largest at the first or last frequency, or zero
-    /// next to the largest one.
+    /// Finds the peak. Returns `None` if the magnitude is largest at the first or the last
+    /// frequency, or if it is zero next to the largest one.
     pub(crate) fn find(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let larger = |best: usize, at: usize| {
             if magnitude[at] > magnitude[best] { at } else { best }
@@ -235,16 +236,16 @@ impl Peak {
     }
 }
 
-/// Number of averages below which the coherence says little.
+/// With fewer averages than this, the coherence is not meaningful.
 const FEW: usize = 5;
 /// Coherence below which the response is uncertain.
 const COHERENT: f64 = 0.9;
-/// Largest distance between two stretches of low coherence, relative to their frequency, at which
-/// they are reported as one.
+/// Two stretches of low coherence are reported as one if their distance, relative to their
+/// frequency, is at most this.
 const NEAR: f64 = 0.1;
 
 /// Returns the warnings about a measured response. `outlasting` is the number of hits whose
-/// response has not died out.
+/// response has not died out at the end of its window.
 pub(crate) fn notices(
     measured: &MeasuredResponse,
     settings: &ResponseSettings,
@@ -287,8 +288,8 @@ pub(crate) fn without_hits(records: &[Record], cuts: &[Vec<Cut>]) -> Vec<String>
     empty.map(|(record, _)| format!("{}: no hit found.", record.file())).collect()
 }
 
-/// Describes the stretches of low coherence. Stretches closer to each other than a tenth of their
-/// frequency are merged.
+/// Describes the stretches of low coherence. Stretches that are closer to each other than a tenth
+/// of their frequency are merged.
 fn incoherent(measured: &MeasuredResponse) -> Option<String> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     let both = measured.frequency_hz.iter().zip(&measured.coherence);

@@ -1,10 +1,11 @@
 //! Measures the frequency response of a recording rig or a finger display, from recordings of its
 //! input and output.
 //!
-//! The input is either a hammer's force in separate hits, or a continuous drive of a display. Each
-//! hit, or each window of a continuous drive, is transformed. The averaged auto and cross spectra
-//! give the response ([`Estimator`]) and the coherence. Hits that would distort the average are
-//! thrown out, each with its time and [`Reason`].
+//! The input is either the force of a hammer in separate hits, or the continuous drive of a
+//! display. Each hit, or each window of a continuous drive, is transformed to a spectrum. The
+//! averaged auto spectra and cross spectrum give the response ([`Estimator`]) and the coherence.
+//! Hits that would distort the average are thrown out. Each of these is reported with its time and
+//! [`Reason`].
 //!
 //! Sources of the formulas:
 //! - J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010: spectra of segments (section

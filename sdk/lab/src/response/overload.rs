@@ -6,17 +6,16 @@ use std::ops::Range;
 use super::pieces::Reason;
 use super::record::{Channel, Record};
 
-/// Number of equal samples in a row, at a channel's highest or lowest value, from which the channel
-/// counts as clipped. The top of a pulse may repeat a converter's code two or three times without
-/// clipping.
+/// If this many equal samples follow each other at a channel's highest or lowest value, the channel
+/// counts as clipped. The top of a pulse may have two or three equal samples without clipping.
 const IN_A_ROW: usize = 4;
-/// Part of the largest excursion that a clipped value must reach. Without this limit, a signal at
-/// rest would count as clipped, because it repeats its lowest value.
+/// Fraction of the largest deviation that a clipped value must reach. Without this limit, a signal
+/// at rest would count as clipped, because it repeats its lowest value.
 const AWAY: f64 = 0.5;
-/// Part of a given limit from which a sample counts as being at the limit.
+/// A sample counts as being at a given limit from this fraction of the limit on.
 const AT_LIMIT: f64 = 0.999;
 
-/// The stretches in which a channel is at its limit, in order.
+/// The stretches in which a channel is at its limit, in the order of time.
 #[derive(Debug)]
 pub(crate) struct Overloads {
     channel: Channel,
@@ -96,7 +95,7 @@ const NORMAL: f64 = 1.482_602_218_505_602;
 /// A signal's level at rest and its noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Baseline {
-    /// The median.
+    /// Level at rest: the median.
     pub(crate) level: f64,
     /// RMS of the noise, from the median absolute deviation. Hits do not influence it as long as
     /// they fill less than half of the recording.

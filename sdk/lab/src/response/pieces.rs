@@ -1,7 +1,7 @@
-//! The parts of recordings that are averaged or thrown out.
+//! The parts of recordings (pieces) that are averaged or thrown out.
 //!
-//! A response is an average of pieces. Each piece has a time and, if it is thrown out, a reason, so
-//! that a measurement can be judged without its samples.
+//! A response is an average over pieces. Each piece has a time and, if it is thrown out, a reason.
+//! So a measurement can be judged without its samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub struct Piece {
     /// Largest input in the window, measured from its level at rest, in the input's unit, with its
     /// sign.
     pub peak: f64,
-    /// Why it was thrown out; `None` if it is used.
+    /// Why the piece was thrown out; `None` if it is used.
     pub thrown_out: Option<Reason>,
 }
 
@@ -38,7 +38,7 @@ pub enum Reason {
         channel: Channel,
         /// Time of the first sample at the limit in the file, seconds.
         at_s: f64,
-        /// The value there, in the channel's unit.
+        /// Value of this sample, in the channel's unit.
         value: f64,
     },
     /// The recording has no samples for the part before the trigger.
@@ -75,7 +75,7 @@ impl fmt::Display for Reason {
 }
 
 impl Piece {
-    /// Returns the place and the reason if it was thrown out.
+    /// Returns the place and the reason, if the piece was thrown out.
     pub(crate) fn place_and_reason(&self) -> Option<String> {
         let reason = self.thrown_out.as_ref()?;
         Some(format!("{} at {:.4} s, {reason}", self.file, self.time_s))
@@ -85,9 +85,9 @@ impl Piece {
 /// A piece with its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cut {
-    /// Samples of the window. They extend beyond the recording if the window is cut off.
+    /// Indices of the window's samples. They extend beyond the recording if the window is cut off.
     pub(crate) samples: Range<usize>,
-    /// Sample of the trigger, or the start of a window of a continuous drive.
+    /// Index of the trigger's sample, or of the first sample of a window of a continuous drive.
     pub(crate) trigger: usize,
     pub(crate) piece: Piece,
 }

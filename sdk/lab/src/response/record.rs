@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use crate::error::LabError;
 
-/// Highest sample rate, hertz, and largest magnitude of a sample; the same limits as for
-/// recordings.
+/// Highest sample rate, hertz, and largest absolute value of a sample. The limits are the same as
+/// for recordings.
 const MOST_HZ: f64 = 1e9;
 const LARGEST: f64 = 1e12;
 
@@ -35,8 +35,8 @@ impl fmt::Display for Channel {
 
 /// Input and output of a setup, recorded together.
 ///
-/// Both channels have the same length and finite samples of at most 1e12, and neither is constant.
-/// Any units are allowed; the response is in the output's unit per input's unit.
+/// Both channels have the same length, finite samples with absolute values of at most 1e12, and are
+/// not constant. Any units are allowed. The response is in the output's unit per unit of the input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
@@ -63,8 +63,8 @@ impl Record {
         Ok(record)
     }
 
-    /// Creates a record from a recording that was read with [`column_map`]: its first axis is the
-    /// input, its second the output.
+    /// Creates a record from a recording that was read with [`column_map`]. Its first axis is the
+    /// input, its second axis the output.
     ///
     /// # Errors
     /// The errors of [`Self::new`], and an error if the recording does not have two axes.
@@ -127,7 +127,7 @@ impl Record {
 
     fn check_channel(&self, channel: Channel) -> Result<(), LabError> {
         let (file, values) = (self.file.clone(), self.channel(channel));
-        // NaN does not pass this comparison either.
+        // NaN also fails this comparison.
         let is_sound = |value: &f64| value.abs() <= LARGEST;
         if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
             return Err(LabError::Sample { file, channel, sample, value: values[sample] });
@@ -151,7 +151,7 @@ impl Record {
 /// ```
 ///
 /// # Errors
-/// A text is not a column or expression, one column is given for both channels, or the further
+/// A text is not a column or an expression, one column is given for both channels, or the further
 /// roles include an axis.
 pub fn column_map(
     input: &str,

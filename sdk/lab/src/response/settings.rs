@@ -1,4 +1,5 @@
-//! Settings of measuring a response: the command's flags and the Python package's keywords.
+//! Settings for measuring a response. They are flags of the command and keywords of the Python
+//! package.
 
 use htex_base::finding::Hint;
 use serde::{Deserialize, Serialize};
@@ -20,8 +21,9 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "h1"))]
     pub estimator: Estimator,
 
-    /// Length of the part of the recording that is transformed, s. The frequency grid of the
-    /// response is its inverse; with multiples of 0.2, it contains the 5 Hz grid of texture spectra
+    /// Length of a window, s: the part of the recording that is transformed at a time. The response
+    /// has a value every 1/length Hz; lengths that are multiples of 0.2 s include the 5 Hz grid of
+    /// texture spectra
     #[cfg_attr(feature = "clap", arg(long = "window", value_name = "S", default_value_t = 1.0))]
     pub window_s: f64,
 
@@ -38,12 +40,13 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
-    /// The same for the output
+    /// Magnitude of the output at which its sensor or amplifier is overloaded. Without it, the same
+    /// rule applies as for the input
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 
-    /// The input is a drive without pauses (noise, a sweep): use windows with half overlap and a
-    /// Hann window
+    /// The input is a continuous drive, such as noise or a sweep: use Hann windows with half
+    /// overlap
     #[cfg_attr(feature = "clap", arg(
         long,
         conflicts_with_all = ["pre_trigger_s", "trigger", "double", "force_window_s", "exponential_s"]
@@ -55,7 +58,7 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long = "pre-trigger", value_name = "S"))]
     pub pre_trigger_s: Option<f64>,
 
-    /// Hits: level at which one starts, relative to the largest input of the recording [default:
+    /// Hits: level at which a hit starts, relative to the largest input of the recording [default:
     /// 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub trigger: Option<f64>,
@@ -64,12 +67,13 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub double: Option<f64>,
 
-    /// Hits: time after the trigger at which the input fades to zero, s; removes noise between hits
+    /// Hits: time after the trigger, s, from which on the input is faded to zero; this removes
+    /// noise between hits
     #[cfg_attr(feature = "clap", arg(long = "force-window", value_name = "S"))]
     pub force_window_s: Option<f64>,
 
     /// Hits: time constant of an exponential window on both channels, s, for responses that outlast
-    /// the window. It raises their damping by its inverse
+    /// the window. The window raises their damping by the inverse of this time constant
     #[cfg_attr(feature = "clap", arg(long = "exponential", value_name = "S"))]
     pub exponential_s: Option<f64>,
 }
@@ -77,27 +81,27 @@ pub struct ResponseSettings {
 /// How the hits of a hammer are found and cut out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct HitSettings {
-    /// Part of the window before the trigger, seconds. The mean of each channel in that part is
-    /// removed.
+    /// Length of the part of the window before the trigger, seconds. The mean of each channel over
+    /// this part is removed.
     pub(crate) pre_trigger_s: f64,
-    /// Level at which a hit starts, relative to the largest input of its recording. The level used
-    /// is at least 8 times the noise.
+    /// Level at which a hit starts, relative to the largest input of its recording. At least 8
+    /// times the noise is used.
     pub(crate) trigger: f64,
-    /// Size of a second contact in the window, relative to the hit, from which the hit counts as a
-    /// double hit. The size used is at least 8 times the noise.
+    /// A hit counts as a double hit if a second contact in the window has at least this size,
+    /// relative to the hit. At least 8 times the noise is used.
     pub(crate) double: f64,
-    /// Force window: the input is kept until this time after the trigger, seconds, and then fades
-    /// to zero over a quarter of that time (half a cosine). It removes the noise of the input
+    /// Force window, seconds. The input is kept until this time after the trigger. It then fades to
+    /// zero over a quarter of this time (half a cosine). This removes the noise of the input
     /// between hits.
     pub(crate) force_window_s: Option<f64>,
-    /// Exponential window: both channels are multiplied by `exp(-t / this)` after the trigger,
-    /// seconds. It forces responses that outlast the window to end, and raises their damping by its
-    /// inverse, in 1/s.
+    /// Exponential window: time constant, seconds. After the trigger, both channels are multiplied
+    /// by `exp(-t / this)`. This makes responses end that would outlast the window. It raises their
+    /// damping by the inverse of the time constant, in 1/s.
     pub(crate) exponential_s: Option<f64>,
 }
 
 impl Default for ResponseSettings {
-    /// Hits, H1, windows of 1 s, 20 to 1000 Hz.
+    /// Returns the default settings: hits, H1, windows of 1 s, 20 to 1000 Hz.
     fn default() -> Self {
         Self {
             estimator: Estimator::H1,
@@ -117,7 +121,7 @@ impl Default for ResponseSettings {
 }
 
 impl ResponseSettings {
-    /// Returns how hits are cut out; `None` for a continuous drive.
+    /// Returns how hits are found and cut out, or `None` for a continuous drive.
     pub(crate) fn hits(&self) -> Option<HitSettings> {
         (!self.continuous).then(|| HitSettings {
             pre_trigger_s: self.pre_trigger_s.unwrap_or(0.02),
@@ -128,8 +132,8 @@ impl ResponseSettings {
         })
     }
 
-    /// Returns the settings with their defaults, as JSON. Those of hits are in `excitation.hits`;
-    /// for a continuous drive, `excitation` is `continuous`.
+    /// Returns the settings as JSON, with default values filled in. The settings for hits are in
+    /// `excitation.hits`. For a continuous drive, `excitation` is `continuous`.
     pub fn resolved(&self) -> Value {
         let excitation = self.hits().map_or(json!("continuous"), |hits| json!({ "hits": hits }));
         json!({
@@ -143,8 +147,8 @@ impl ResponseSettings {
         })
     }
 
-    /// Returns the number of samples in a window. Refuses settings with which no recording can be
-    /// measured.
+    /// Returns the number of samples in a window. Returns an error for settings with which no
+    /// recording can be measured.
     pub(crate) fn check(&self, rate_hz: f64) -> Result<usize, LabError> {
         let samples = (self.window_s * rate_hz).round();
         require(
@@ -194,7 +198,7 @@ impl HitSettings {
     }
 }
 
-/// The words for a setting, and its name.
+/// The description of a setting, and its name.
 type SettingName = (&'static str, &'static [&'static str; 1]);
 
 fn positive(option: SettingName, value: Option<f64>) -> Result<(), LabError> {

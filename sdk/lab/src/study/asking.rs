@@ -1,4 +1,4 @@
-//! What a session needs from outside: someone to ask, a clock, and a rig that plays.
+//! The interfaces that a session needs: a participant to ask, a clock, and a rig that plays.
 
 use std::time::Duration;
 
@@ -30,13 +30,13 @@ pub enum View {
         /// What happened in the trial, for example that the motion left its target.
         notice: Option<String>,
     },
-    /// The texture plays. Either its level rises until it is felt, or its gain is matched.
+    /// A texture plays. Either its level rises until the participant feels it, or its gain is
+    /// matched.
     Matching {
         texture: String,
         /// The method, which determines the available keys.
         method: GainMethod,
-        /// Whether the level is still rising until the texture is felt. While it rises, all keys
-        /// have a meaning.
+        /// Whether the level is still rising. While it rises, all keys have a meaning.
         rising: bool,
         /// The current gain, decibels relative to the maximum.
         gain_db: f64,
@@ -49,16 +49,17 @@ pub enum View {
     Done,
 }
 
-/// Time during which a question or a matching accepts no answer. A press in that time is the second
-/// press of the key that answered the view before.
+/// Time after a question or a matching is shown during which keys are ignored. A press in this time
+/// is the second press of the key that answered the previous view.
 const GUARD: Duration = Duration::from_millis(300);
-/// Time during which the start of a trial or the end of a rest accepts no key. Both use the same
-/// key, and a double press, whose second press comes within 0.5 s, must only do one of them.
+/// Time during which keys are ignored at the start of a trial and at the end of a rest. Both use
+/// the same key, and a double press, whose second press comes within 0.5 s, must do only one of
+/// them.
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Returns how long after it is shown a press does not count, because it was meant for the view
-    /// before.
+    /// Returns the time after the view is shown during which keys must be ignored, because they
+    /// were meant for the previous view.
     pub fn guard(&self) -> Duration {
         match self {
             Self::Question { .. } | Self::Matching { .. } => GUARD,
@@ -73,17 +74,17 @@ pub enum Key {
     Digit(u8),
     /// A key of the gain matching.
     Gain(GainKey),
-    /// The next thing may begin.
+    /// The key that begins or continues.
     Go,
-    /// The session ends here and continues another time.
+    /// The key that ends the session. It can be continued later.
     Quit,
 }
 
-/// The participant who is asked, or a stand-in. Keys pressed within [`View::guard`] must be
-/// ignored.
+/// The connection to the participant, who may be simulated. It must ignore keys that are pressed
+/// within [`View::guard`].
 pub trait Asker {
-    /// Shows a view. Keys that were pressed before are dropped. `done` of `all` trials have been
-    /// rated.
+    /// Shows a view, and drops keys that were pressed before. So far, `done` of `all` trials have
+    /// been rated.
     fn show(&mut self, view: &View, done: usize, all: usize);
 
     /// Returns the next key since the last [`Self::show`], if there is one.
@@ -91,33 +92,33 @@ pub trait Asker {
 }
 
 pub trait Clock {
-    /// Returns milliseconds since 1970, or since the start of a simulated session.
+    /// Returns the time in milliseconds, since 1970 or since the start of a simulated session.
     fn now_ms(&self) -> u64;
 
-    /// Waits for this time. A simulated clock only advances.
+    /// Waits for this time. A simulated clock does not wait, but advances.
     fn pass(&mut self, time: Duration);
 
-    /// Reports that something of this length was played, so that a simulated clock can advance.
+    /// Tells a simulated clock that something of this length was played, so that it advances.
     fn played(&mut self, time: Duration);
 
-    /// Returns date and time in UTC in the format of [`crate::study::utc`]; `None` for a simulated
-    /// clock.
+    /// Returns date and time in UTC, in the format of [`crate::study::utc`], or `None` for a
+    /// simulated clock.
     fn date(&self) -> Option<String>;
 
-    /// Makes a simulated clock continue from this time. Other clocks ignore it.
+    /// Makes a simulated clock continue from this time. Other clocks ignore this call.
     fn go_on_at(&mut self, ms: u64);
 }
 
-/// How something was played.
+/// How a stimulus was played.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Playback {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
-    /// Levels that the device was given.
+    /// Levels of the samples that were written to the device.
     pub output: OutputLevels,
-    /// RMS that corresponds to this drive, in the assets' unit.
+    /// RMS in the assets' unit that corresponds to the drive.
     pub reference_rms: f64,
-    /// The recording of what was felt, already on disk.
+    /// The recording of the felt force, which is already on disk.
     pub felt: Option<FeltFile>,
 }
 
@@ -136,12 +137,13 @@ pub trait Rig {
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Playback, Self::Error>;
 
-    /// Returns what the device was given in the last [`Self::play`] that ended with an error, and
-    /// the drive of a display in volts. `None` if the device was not opened.
+    /// Returns the drive of a display, volts, and the levels that were written to the device, for
+    /// the last [`Self::play`] that ended with an error. Returns `None` if the device was not
+    /// opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
-    /// Returns whether an error of [`Self::play`] means that the device ran dry, so that playing
-    /// again may succeed.
+    /// Returns whether an error of [`Self::play`] means that the device ran out of samples. Playing
+    /// again may then succeed.
     fn ran_dry(error: &Self::Error) -> bool;
 
     /// Tells the experimenter what happened in a trial. The participant's view shows the same
@@ -151,6 +153,6 @@ pub trait Rig {
     /// Returns the nine-band error of a representation, decibels, if the asset states it.
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64>;
 
-    /// Returns whether the program was asked to end.
+    /// Returns whether the program was asked to end, for example by a signal.
     fn is_interrupted(&self) -> bool;
 }

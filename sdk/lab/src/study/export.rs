@@ -28,14 +28,15 @@ const COLUMNS: [&str; 11] = [
 /// Ratings of all participants in a folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// The table as CSV: one participant after the other, each in the order of the trials.
+    /// The table as CSV: one participant after the other, and for each the ratings in the order of
+    /// the trials.
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
     /// Number of trials whose motion left the study's target, as stated in the column `off_target`.
     pub off_target: usize,
-    /// What an analysis must consider: incomplete sessions, trials off their target, and devices
-    /// with different settings.
+    /// Warnings that an analysis must consider: incomplete sessions, trials off their target, and
+    /// devices with different settings.
     pub warnings: Vec<String>,
     /// Participants with incomplete sessions, each as a sentence. The warnings contain these
     /// sentences.
@@ -47,10 +48,10 @@ pub struct Export {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
-    /// They are averaged with the others, and counted.
+    /// These trials are averaged with the others, and counted.
     #[default]
     Keep,
-    /// They are left out, and counted.
+    /// These trials are left out, and counted.
     LeaveOut,
 }
 
@@ -58,9 +59,9 @@ pub enum OffTarget {
 /// selects the one whose ratings are exported.
 ///
 /// # Errors
-/// [`LabError::NoAnswers`] if the folder has none; [`LabError::OtherVersion`] if they belong to
-/// several versions of a study, or to both simulated and real participants;
-/// [`LabError::Attribute`]; and errors of reading.
+/// [`LabError::NoAnswers`] if the folder has no answers. [`LabError::OtherVersion`] if they belong
+/// to several versions of a study, or to both simulated and real participants.
+/// [`LabError::Attribute`] if the attribute is not in the answers. Errors of reading.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, LabError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);
@@ -102,7 +103,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, LabError> {
             files.push(path);
         }
     }
-    // A folder lists its files in any order, and the table must not depend on it.
+    // A folder lists its files in any order, but the table must not depend on this order.
     files.sort();
     if files.is_empty() {
         Err(LabError::NoAnswers { folder: folder.to_owned() })
@@ -143,7 +144,7 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, LabErr
     };
     match found {
         Some(found) => Ok(found.clone()),
-        // There is nothing to export yet.
+        // There are no ratings to export yet.
         None if all.is_empty() => Ok(String::new()),
         None => Err(LabError::Attribute { known: Vec::from_iter(all.iter().cloned()).join(", ") }),
     }
@@ -231,7 +232,8 @@ fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
         answer.response_ms.to_string(),
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),
         yes(answer.simulated || header.simulated.is_some()),
-        // Without a recording of speed or force, it is not known whether the target was kept.
+        // Without a recording of speed or force, it is unknown whether the motion kept to the
+        // target.
         (answer.felt.as_ref()).and_then(FeltFile::is_off_target).map_or(String::new(), yes),
     ]
 }

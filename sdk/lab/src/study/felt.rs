@@ -1,10 +1,11 @@
-//! Records what is felt while a trial plays. The source is read in its own thread.
+//! Records the force on the participant's finger while a trial plays. The source is read in its own
+//! thread.
 //!
 //! The source is opened anew for each trial, so that a trial's recording does not depend on earlier
 //! ones.
 //!
-//! A session that was killed and continued writes the same bytes as one that was not, provided that
-//! the device and the source deliver the same bytes.
+//! If the device and the source deliver the same bytes, a session that was killed and continued
+//! writes the same files as a session without interruption.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -31,13 +32,13 @@ use crate::study::stimulus::Stimulus;
 
 /// Folder for a participant's recordings.
 const FOLDER: &str = "felt";
-/// How far the motion may differ from the study's motion, relative. It is used to judge each
-/// recording.
+/// Largest allowed relative difference of the motion from the study's motion. Each recording is
+/// judged by it.
 const TOLERANCE: f64 = 0.1;
 
 pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Input>, DeviceError>>;
 
-/// What is recorded and where.
+/// Settings for recording felt forces: what is recorded, and where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeltSetup {
     /// Folder for the answers.
@@ -45,7 +46,7 @@ pub struct FeltSetup {
     pub participant: String,
     /// The source, as the user named it.
     pub source: String,
-    /// Its settings, as the user gave them.
+    /// Settings of the source, as the user gave them.
     pub settings: BTreeMap<String, String>,
     /// The map of channels, as the user gave it.
     pub map: Option<String>,
@@ -56,9 +57,9 @@ pub struct FeltSetup {
     pub format: Format,
     /// Program and version that records.
     pub tool: String,
-    /// Whether a recording begins with the source's first sample, and not with the first sample
-    /// that is played. Trials that are not played in real time have no clock in common with the
-    /// source.
+    /// Whether a recording begins with the source's first sample, instead of the first sample that
+    /// is played. This is needed for trials that are not played in real time, because they have no
+    /// common clock with the source.
     pub is_fast: bool,
 }
 
@@ -82,7 +83,7 @@ struct Running {
 struct ThreadState {
     stop: AtomicBool,
     failed: AtomicBool,
-    /// Seconds until the first played sample reaches the display.
+    /// Time until the first played sample reaches the display, seconds.
     lead_s: OnceLock<f64>,
 }
 
@@ -126,7 +127,7 @@ impl Felt {
         })
     }
 
-    /// Starts the source for a trial. Everything before [`Self::sounds`] is left out.
+    /// Starts the source for a trial. The recording leaves out everything before [`Self::sounds`].
     ///
     /// # Errors
     /// If the source cannot be opened or started, or has another sample rate than before.
@@ -149,7 +150,7 @@ impl Felt {
         }
         let header = self.header(name, seconds, &inputs);
         if let Err(error) = source.start() {
-            // Given back, so that the next trial can try again.
+            // Put back, so that the next trial can try again.
             self.inputs = Some(inputs);
             return Err(error.into());
         }
@@ -193,11 +194,11 @@ impl Felt {
         }
     }
 
-    /// Says that the first played sample reaches the display in `lead_s` seconds. The recording
-    /// begins there.
+    /// Tells the recorder that the first played sample reaches the display in `lead_s` seconds. The
+    /// recording begins at this time.
     pub fn sounds(&self, lead_s: f64) {
         if let Some(running) = &self.running {
-            // Only the first time counts.
+            // Only the first call has an effect.
             let _ = running.shared.lead_s.set(lead_s.max(0.0));
         }
     }
@@ -214,8 +215,8 @@ impl Felt {
         running.is_some_and(|running| running.shared.failed.load(Ordering::Acquire))
     }
 
-    /// Waits for the end of the recording, writes it with its JSON, and returns it once both are on
-    /// disk. `None` if nothing was recorded.
+    /// Waits for the end of the recording, and writes the recording and its JSON. Returns when both
+    /// are on disk. Returns `None` if nothing was recorded.
     ///
     /// # Errors
     /// The errors of the source, and [`LabError::File`].
@@ -283,7 +284,8 @@ impl Drop for Felt {
     }
 }
 
-/// Returns a path relative to the folder of answers. Any other text stays unchanged.
+/// Returns a path relative to the folder of answers, if it lies in this folder. Any other text is
+/// returned unchanged.
 fn within(folder: &Path, text: &str) -> String {
     let inner = Path::new(text).strip_prefix(folder);
     inner.map_or_else(|_| text.to_owned(), |path| path.display().to_string())
@@ -340,7 +342,7 @@ fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
     ((begin_s - reader.now_s()) * data.header.rate_hz).round().max(0.0) as usize
 }
 
-/// Adds to the error of a source that ended how much was recorded until then.
+/// If the error states that the source ended, adds how much was recorded until then.
 fn after(error: LabError, data: &TakeData) -> LabError {
     match error {
         LabError::Ended { seconds, kept, .. } => {

@@ -1,4 +1,4 @@
-//! Exports the spectra of what was felt as a table, for analyses.
+//! Exports the spectra of the felt forces as a table, for analyses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -19,10 +19,10 @@ use crate::study::export::{OffTarget, sessions_of};
 use crate::study::lines::FeltFile;
 use crate::study::log::file_hash;
 
-/// Participant and model in the lines of the real textures.
+/// Text in the columns participant and model for the lines of real textures.
 const RECORDED: &str = "recorded";
 
-/// The spectrum of a real texture.
+/// The recorded spectrum of a real texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     pub quantity: Quantity,
@@ -38,15 +38,16 @@ pub struct FeltSpectra {
     pub csv: String,
     /// Number of recordings that were read.
     pub recordings: usize,
-    /// Number of recordings of trials whose motion left the study's target. [`OffTarget`] says
-    /// whether they were read.
+    /// Number of recordings of trials whose motion left the study's target. [`OffTarget`]
+    /// determines whether they were read.
     pub off_target: usize,
-    /// What an analysis must consider, as sentences.
+    /// Warnings that an analysis must consider, as sentences.
     pub warnings: Vec<String>,
 }
 
 impl Reference {
-    /// Reads the spectrum of a recording. With `strict`, any problem of its signals is an error.
+    /// Reads the spectrum of a recording of a real texture. If `strict` is true, any problem of its
+    /// signals is an error.
     ///
     /// # Errors
     /// [`LabError::Content`] if it cannot be read as a texture from 20 to 1000 Hz.
@@ -60,8 +61,8 @@ impl Reference {
         Ok(Self::average(&[reading.spectra], options).map_err(ContentError::in_file(file))?)
     }
 
-    /// Returns the spectrum that was recorded for an asset, at the condition nearest to a motion,
-    /// or else at its first condition.
+    /// Returns the recorded spectrum that an asset stores, at the condition nearest to a motion.
+    /// Without a known motion, this is the first condition.
     ///
     /// # Errors
     /// [`LabError::Content`] if the asset cannot be read or does not have the spectrum.
@@ -105,13 +106,13 @@ impl Reference {
 }
 
 /// Computes the spectra of a folder of answers. For each participant, texture and model, the
-/// recordings of all trials are read and averaged, as `htex fit` reads recordings of one condition.
-/// `off_target` says how to treat trials off the study's target. `recorded` holds the real textures
-/// by name.
+/// recordings of all trials are read and averaged, in the same way as `htex fit` reads recordings
+/// of one condition. `off_target` states how to treat trials off the study's target. `recorded` has
+/// the spectra of the real textures by name.
 ///
 /// # Errors
-/// The errors of [`crate::study::export()`]; [`LabError::NotRecorded`]; and
-/// [`LabError::Content`] if a recording is not the one of its trial or has no spectrum, or if the
+/// The errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no recordings.
+/// [`LabError::Content`] if a recording does not belong to its trial or has no spectrum, or if the
 /// spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
@@ -188,7 +189,7 @@ pub fn felt_spectra(
     Ok(FeltSpectra { csv: table(folder, &rows)?, recordings, off_target: off, warnings })
 }
 
-/// Reads a recording, which must be the one of its trial.
+/// Reads a recording, and checks that it belongs to its trial.
 fn part(
     folder: &Path,
     felt: &FeltFile,
@@ -219,8 +220,8 @@ fn part(
 
 fn open_take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
     let options = settings_of(file, header).read_options(1)?.into_iter().next().unwrap_or_default();
-    // All of a participant's motion is read. The tolerance of 10 % only applies to recordings of
-    // textures.
+    // The recording is read at every motion of the participant. The tolerance of 10 % applies only
+    // to recordings of real textures.
     Ok(Take { recording: read_recording(file, &options)?, given: Exploration::default() })
 }
 

@@ -41,7 +41,7 @@ pub struct Study {
     /// on every machine.
     #[serde(default)]
     pub seed: u64,
-    /// The participants: either their number, which stands for P01, P02, …, or their names.
+    /// The participants: either their number, so that they are named P01, P02, …, or their names.
     #[serde(default)]
     pub participants: Participants,
     /// The textures.
@@ -51,8 +51,9 @@ pub struct Study {
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
-    /// An additional model, the best available one (`bands`). It is played and rated like the
-    /// others, and marked in the results. Participants who rate it low are unreliable.
+    /// An additional model, which should be the best available one (`bands`). It is played and
+    /// rated like the other models, and marked in the results. A participant who rates it low is
+    /// unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
     /// Number of trials for each texture in each model.
@@ -70,8 +71,8 @@ pub struct Study {
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
     /// Level at which each texture starts in the training and in the gain matching, decibels
-    /// relative to the maximum. From there it rises until the participant feels the texture.
-    /// Nothing is played at a higher level before the participant asks for it.
+    /// relative to the maximum. From there the level rises until the participant feels the texture.
+    /// It never rises unless the participant asks for it.
     #[serde(default = "start")]
     #[schemars(range(min = -120, max = 0))]
     pub start_db: f64,
@@ -133,17 +134,18 @@ pub enum Order {
     /// All trials in random order.
     #[default]
     Random,
-    /// Each repetition is a block. In it, every texture occurs once in every model, in random
+    /// Each repetition is a block, in which every texture occurs once in every model, in random
     /// order.
     BlockedByRepetition,
-    /// All trials of a texture follow each other. The textures and the trials of each are in random
-    /// order. The real texture has to be exchanged least often.
+    /// All trials of a texture follow each other. Both the textures and the trials of each texture
+    /// are in random order. With this order, the experimenter must exchange the real texture least
+    /// often.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square. Over as many rows as there are conditions, each
-    /// condition occurs once at each place.
+    /// Each repetition is a row of a Latin square. In as many rows as there are conditions, each
+    /// condition occurs once at each position.
     LatinSquare,
-    /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each
-    /// condition also follows every other one equally often (Williams 1949).
+    /// Each repetition is a row of a Williams square (Williams 1949). It is a Latin square in
+    /// which, over all rows, each condition also follows every other condition equally often.
     WilliamsSquare,
 }
 
@@ -280,7 +282,7 @@ pub struct MaskingNoise {
     pub level_dbfs: f64,
 }
 
-/// Not derived, because an untagged enum of serde would lose the place of an error.
+/// Written by hand, because an untagged enum of serde would lose the place of an error.
 impl<'de> Deserialize<'de> for Participants {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(CountOrNames)

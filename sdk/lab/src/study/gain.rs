@@ -1,4 +1,4 @@
-//! Gain matching as a state machine that is driven by key presses.
+//! Gain matching: a state machine that advances with each key press.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,13 +17,14 @@ pub enum GainKey {
     Weaker,
     /// Weaker by a large step.
     MuchWeaker,
-    /// While the level rises: the participant feels the texture. While it is matched: it matches.
+    /// While the level rises: the participant feels the texture. During the matching: the texture
+    /// matches the real one.
     Accept,
 }
 
-/// Finds the level of one texture. It rises from a weak start until the participant feels the
-/// texture, and is then matched to the real texture, starting from that level. Levels are in
-/// decibels relative to the maximum.
+/// Finds the level of one texture. The level rises from a weak start until the participant feels
+/// the texture. From there, it is matched to the real texture. Levels are in decibels relative to
+/// the maximum.
 ///
 /// ```
 /// use htex_lab::study::{GainKey, Match, Matching};
@@ -43,8 +44,8 @@ pub struct Match {
     settings: Matching,
     gain_db: f64,
     stage: Stage,
-    /// Whether the level at which the texture is felt is the result, without matching it
-    /// afterwards.
+    /// Whether the level at which the participant feels the texture is already the result, without
+    /// a matching.
     ends_when_felt: bool,
     /// Gains at which a staircase turned.
     reversals: Vec<f64>,
@@ -74,13 +75,13 @@ impl Match {
         }
     }
 
-    /// Starts only a rise from `start_db`. Its result is the level at which the texture is felt.
-    /// The step sizes come from `settings`.
+    /// Starts a rise from `start_db` without a matching. Its result is the level at which the
+    /// participant feels the texture. The step sizes come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }
 
-    /// Returns the current gain, which is the result once it is found.
+    /// Returns the current gain. When the gain is found, this is the result.
     pub fn gain_db(&self) -> f64 {
         self.gain_db
     }
@@ -90,7 +91,8 @@ impl Match {
         self.stage == Stage::Found
     }
 
-    /// Returns whether the level is still rising until the texture is felt.
+    /// Returns whether the level is still rising, because the participant has not felt the texture
+    /// yet.
     pub fn is_rising(&self) -> bool {
         self.stage == Stage::Rising
     }
@@ -99,8 +101,8 @@ impl Match {
         self.settings.method
     }
 
-    /// Returns whether the key has a meaning now. While the level rises, all keys do: a request for
-    /// a weaker level is never refused.
+    /// Returns whether the key has a meaning now. While the level rises, all keys have one: a
+    /// request for a weaker level is never refused.
     pub fn takes(&self, key: GainKey) -> bool {
         takes(self.settings.method, self.is_rising(), key)
     }

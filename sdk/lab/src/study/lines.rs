@@ -19,21 +19,21 @@ pub(crate) const VERSION: &str = "1.0";
 pub enum Line {
     /// The first line.
     Header(Box<Header>),
-    /// The start of a session. Sessions with a simulated clock, which has no date, are not recorded
-    /// here.
+    /// The start of a session. A session with a simulated clock has no such line, because this
+    /// clock has no date.
     Session(SessionStart),
-    /// A key press while the level of a texture rises until it is felt, in the training and in the
-    /// gain matching.
+    /// A key press while the level of a texture rises until the participant feels it, in the
+    /// training and in the gain matching.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
     /// A key press in the gain matching.
     Gain(GainPress),
-    /// Something that played was stopped before its end.
+    /// A stimulus was stopped before its end.
     Stopped(Stop),
     /// A rest that has ended.
     Rest {
-        /// Number of trials before it.
+        /// Number of trials before the rest.
         after: u32,
         /// Time, milliseconds.
         at_ms: u64,
@@ -44,7 +44,8 @@ pub enum Line {
     Answer(Answer),
 }
 
-/// The first line: what the answers belong to.
+/// The first line of a file of answers: the study, the participant and the program to which the
+/// answers belong.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
@@ -102,18 +103,20 @@ pub struct SessionStart {
 #[serde(deny_unknown_fields)]
 pub struct DeviceUsed {
     pub adapter: String,
-    /// Its profile; empty without one.
+    /// Profile of the device; empty if none is used.
     pub profile: String,
-    /// All its settings, such as the gain of an amplifier, whether they were given, come from the
-    /// profile or are defaults. Two kinds are left out: names of files to which a trial is played,
-    /// and `buffer_ms` if the motion is not live, because then nobody feels how long samples wait.
+    /// All settings of the device, such as the gain of an amplifier, including those from the
+    /// profile and the defaults. Two kinds of settings are left out: names of files to which a
+    /// trial is played; and `buffer_ms` if the motion is not live, because then nobody feels how
+    /// long samples wait.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
-    /// Largest magnitude that it accepts, in its unit (volts for a display). Absent without a
-    /// limit.
+    /// Largest absolute value that the device accepts, in its unit (volts for a display). Absent
+    /// without a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// Device units for one unit of the assets' quantity. Absent if they are the same.
+    /// Number of device units for one unit of the assets' quantity. Absent if device and assets
+    /// have the same quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quantity_gain: Option<f64>,
 }
@@ -159,7 +162,7 @@ impl DeviceUsed {
 pub struct SourceUsed {
     /// The source, as the user named it: `daq:Dev1/ai0:5`.
     pub name: String,
-    /// Its settings, as the user gave them.
+    /// Settings of the source, as the user gave them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// The map of channels, if one was given.
@@ -190,7 +193,7 @@ pub struct FeltFile {
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
     /// How speed or force left the study's motion by more than 10 %, as phrases. Absent if they did
-    /// not leave it or have no target.
+    /// not leave it, or if the study sets no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
     /// Whether speed or force was measured and compared with the study's motion. Absent if neither
@@ -200,8 +203,8 @@ pub struct FeltFile {
 }
 
 impl FeltFile {
-    /// Returns whether the motion left the study's target; `None` if nothing was measured that
-    /// could tell.
+    /// Returns whether the motion left the study's target, or `None` if neither speed nor force was
+    /// measured.
     pub(crate) fn is_off_target(&self) -> Option<bool> {
         if self.off_target.is_empty() { self.compared.then_some(false) } else { Some(true) }
     }
@@ -228,7 +231,7 @@ pub struct Answer {
     /// Time of the answer, milliseconds since 1970 in UTC, or since the start of the session with a
     /// simulated clock.
     pub at_ms: u64,
-    /// Gain with which it was played, decibels relative to the maximum. Absent without gain
+    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without gain
     /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
@@ -238,12 +241,12 @@ pub struct Answer {
     /// Levels that the device was given. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How many times it was stopped before its end, for any reason, since the last line that is
-    /// not a stop.
+    /// How many times the trial was stopped before its end, for any reason, since the last line
+    /// that is not a stop.
     #[serde(default)]
     pub stops: u32,
-    /// How many times the trial was begun before but not felt to its end because the device ran
-    /// dry.
+    /// How many times the trial was begun before, but not played to its end because the device ran
+    /// out of samples.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub repeats: u32,
     /// The recording of what was felt. Absent without a source.
@@ -270,11 +273,11 @@ pub struct GainPress {
     /// Levels that the device was given before the key press. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How many times it was stopped before the key press, not counting the keys of the line
-    /// before.
+    /// How many times the texture was stopped before the key press. The stop by the previous key
+    /// press does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS that corresponds to this drive, in the assets' unit.
+    /// RMS in the assets' unit that corresponds to this drive.
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
@@ -289,7 +292,7 @@ pub struct Rise {
     /// The phase: training or gain.
     pub phase: Phase,
     pub texture: String,
-    /// The model in which it plays.
+    /// The model in which the texture plays.
     pub model: String,
     pub key: GainKey,
     /// The level after the key press, decibels relative to the maximum.
@@ -302,10 +305,11 @@ pub struct Rise {
     pub drive_v: Option<f64>,
     /// Levels that the device was given before the key press.
     pub output: OutputLevels,
-    /// How many times it was stopped before the key press, not counting the key of the line before.
+    /// How many times the texture was stopped before the key press. The stop by the previous key
+    /// press does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS that corresponds to this drive, in the assets' unit.
+    /// RMS in the assets' unit that corresponds to this drive.
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
@@ -323,14 +327,14 @@ pub struct OutputLevels {
     pub peak: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Direct component: the largest magnitude of the mean over any 100 ms. Silence is assumed
+    /// Direct component: the largest absolute value of the mean over any 100 ms. Silence is assumed
     /// before the start.
     pub direct: f64,
     /// Length, seconds.
     pub duration_s: f64,
 }
 
-/// Something that played was stopped before its end.
+/// A stimulus that was stopped before its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stop {
@@ -338,7 +342,7 @@ pub struct Stop {
     pub texture: String,
     pub model: String,
     pub reason: StopReason,
-    /// Gain with which it was played, decibels relative to the maximum. Absent without gain
+    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without gain
     /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
@@ -358,11 +362,11 @@ pub struct Stop {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
-    /// The participant or the experimenter left it.
+    /// The participant or the experimenter left the session.
     Left,
     /// The program was asked to end, or the motion's input ended.
     Interrupted,
-    /// The device ran dry.
+    /// The device ran out of samples.
     RanDry,
     /// The device, the renderer or the source reported an error.
     Failed,
@@ -377,8 +381,8 @@ impl Line {
     /// Parses a line.
     ///
     /// # Errors
-    /// A text that says what is wrong: it is not a line of answers, has other keys or values, or is
-    /// a header of another version.
+    /// A text that states what is wrong: the text is not a line of answers, has unknown keys or
+    /// invalid values, or is a header of another version.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         match &line {
@@ -390,7 +394,7 @@ impl Line {
         }
     }
 
-    /// Returns the time of the line, milliseconds; 0 for the header.
+    /// Returns the time of the line, milliseconds, or 0 for the header.
     pub fn at_ms(&self) -> u64 {
         match self {
             Self::Header(_) => 0,

@@ -1,4 +1,5 @@
-//! The file with one participant's answers: append-only, and on disk before the next trial.
+//! The file with the answers of one participant. It is only appended to, and each answer is on disk
+//! before the next trial.
 
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -23,21 +24,22 @@ pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
 pub struct Log {
     path: PathBuf,
     file: File,
-    /// Length of all whole lines, bytes, if a crash left an incomplete line after them.
+    /// Total length of all whole lines, bytes, if a crash left an incomplete line after them.
     whole: Option<u64>,
 }
 
 impl Log {
-    /// Opens the answers of a session, or begins them, and returns them without the header.
+    /// Opens the file of a session's answers, or creates it. Also returns its lines without the
+    /// header.
     ///
     /// Opening does not change an existing file. If a crash left the last line incomplete, the
-    /// first [`Self::append`] removes it. By then, the header and all whole lines are known to
+    /// first [`Self::append`] removes it. By then it is certain that the header and all whole lines
     /// belong to this session. A link is never followed.
     ///
     /// # Errors
-    /// [`LabError::OtherVersion`] if the answers were begun with another header;
-    /// [`LabError::Busy`] while another program has them open; [`LabError::Line`] if a line is
-    /// damaged; and errors of the file system, including for a link or a pipe.
+    /// [`LabError::OtherVersion`] if the file has another header. [`LabError::Busy`] while another
+    /// program has the file open. [`LabError::Line`] if a line is damaged. Errors of the file
+    /// system, also if the path is a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), LabError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
@@ -72,8 +74,8 @@ impl Log {
     /// Appends a line and returns once it is on disk.
     ///
     /// # Errors
-    /// [`LabError::File`]. The line may then be incomplete; it is removed when the file is opened
-    /// again.
+    /// [`LabError::File`]. The line may then be incomplete. It is removed when the session
+    /// continues.
     pub fn append(&mut self, line: &Line) -> Result<(), LabError> {
         let text = text(line).writing(&self.path)?;
         let synced = self.whole_lines().and_then(|()| {
@@ -116,8 +118,8 @@ fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
     Ok((OwnFolder::private(folder.path()), name))
 }
 
-/// Writes the header under a temporary name and then renames the file, so that no file is without a
-/// header. Returns once it is on disk.
+/// Creates the file with its header under a temporary name, and then renames it. So a file never
+/// lacks a header. Returns when the file is on disk.
 fn begin(path: &Path, header: &Header) -> Result<(), LabError> {
     let begun = place(path).and_then(|(folder, name)| {
         let text = text(&Line::Header(Box::new(header.clone())))?;
@@ -138,7 +140,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), LabError> {
     let Some(Line::Header(header)) = lines.next().transpose()?.filter(|_| count > 0) else {
         return Err(damaged(1, "this is not the header of answers".to_owned()));
     };
-    // The filter above has made sure that `count` is not 0.
+    // The filter above ensures that `count` is not 0.
     let rest = lines.take(count - 1).collect::<Result<Vec<Line>, _>>()?;
     match rest.iter().position(|line| matches!(line, Line::Header(_))) {
         Some(i) => Err(damaged(i + 2, "there is a second header".to_owned())),
@@ -146,7 +148,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), LabError> {
     }
 }
 
-/// Compares everything in two headers except the program and the date.
+/// Returns an error if two headers differ in anything except the program and the date.
 fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), LabError> {
     let changed = if begun.htex_answers != now.htex_answers {
         format!("the file has version {}", begun.htex_answers)
@@ -186,7 +188,7 @@ fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String 
     }
 }
 
-/// Returns a file whose hash differs, or that only one of the two headers has.
+/// Returns a file whose hash differs between two headers, or that only one of the headers has.
 pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a str> {
     let mut names = begun.files.keys().chain(now.files.keys());
     let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);
@@ -194,8 +196,8 @@ pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a s
 }
 
 impl Header {
-    /// Creates the header of a participant's session. `path` is the study's file. The contents of
-    /// this file and of all files that it names are hashed.
+    /// Creates the header of a participant's session. `path` is the study's file. The header has
+    /// hashes of this file and of all files that it names.
     ///
     /// # Errors
     /// [`LabError::File`] if one of the files cannot be read.

@@ -14,13 +14,14 @@
 //!
 //! 1. `read`: reads `study.toml` and checks the files it names. Problems become findings.
 //!    Motion, device and assets are checked by the rules of scenes.
-//! 2. `plan`: the order for every participant, determined only by the file.
-//! 3. `session`: one participant's way through the plan. The same function computes the `progress`,
-//!    whether lines are read or recorded. `log` appends a line and syncs it.
-//! 4. `run`: plays, shows and asks through three traits: a rig (renderer and device), an asker
-//!    (terminal or page) and a clock. `felt` records a source while a trial plays, with the reader
-//!    and writer of guided recordings.
-//! 5. `export`: the table of all ratings. `felt_spectra`: the table of what the participants felt.
+//! 2. `plan`: computes the order of trials for every participant, only from the file.
+//! 3. `session`: takes one participant through the plan. The same function updates the `progress`,
+//!    whether a line is read or recorded. `log` appends a line to the file and flushes it to disk.
+//! 4. `run`: plays trials, shows views and asks questions, through three traits: a rig (renderer
+//!    and device), an asker (terminal or page) and a clock. `felt` records a source while a trial
+//!    plays, with the reader and the writer of guided recordings.
+//! 5. `export`: makes the table of all ratings. `felt_spectra`: makes the table with the spectra of
+//!    the felt forces.
 
 mod asking;
 mod date;

@@ -1,7 +1,7 @@
 //! The page of a session ([`crate::page`]), which asks the participant.
 //!
 //! Each view has a number, and an answer names the number of its view. So a second press of a key,
-//! or a press for a view that is gone, does not count as an answer.
+//! or a press for a view that is no longer shown, does not count as an answer.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -15,7 +15,8 @@ use crate::page::{Content, LocalPage};
 use crate::study::asking::{Asker, Key, View};
 use crate::study::gain::{GainKey, takes};
 
-/// A page that has not reported its finger for this long may be gone. Its finger counts as lifted.
+/// If a page has not reported its finger for this long, it may be closed. Its finger then counts as
+/// lifted.
 const SILENT: Duration = Duration::from_millis(300);
 
 /// Options of a session's page.
@@ -26,7 +27,7 @@ pub struct PageOptions {
     pub title: String,
     /// RMS level of the masking noise, decibels relative to full scale.
     pub noise_dbfs: Option<f64>,
-    /// Millimetres per pixel of the page, if the page reports the finger's motion.
+    /// Size of a pixel of the page, mm, if the page reports the finger's motion.
     pub touch_mm_per_px: Option<f64>,
 }
 
@@ -44,7 +45,7 @@ pub struct TouchMotion {
 pub struct Touch(Arc<PageState>);
 
 impl Touch {
-    /// Returns its current motion; `None` if the page has not reported for 300 ms.
+    /// Returns the finger's current motion, or `None` if the page has not reported for 300 ms.
     pub fn now(&self) -> Option<TouchMotion> {
         let state = self.0.lock();
         let (touched, at) = state.touched?;
@@ -58,7 +59,7 @@ pub struct Page {
     served: LocalPage,
 }
 
-/// What is being asked, shared by the server's thread and the session's thread.
+/// The state of the page, shared by the server's thread and the session's thread.
 struct PageState(Mutex<State>);
 
 struct State {
@@ -115,7 +116,7 @@ impl Asker for Page {
 impl Drop for Page {
     fn drop(&mut self) {
         self.served.wait_for_end(|| {
-            // Otherwise the page would stay at the view before and never show the end.
+            // Otherwise the page would stay at the previous view, and never show the end.
             let state = self.asked.lock();
             state.seen == state.step
         });
@@ -196,7 +197,7 @@ impl State {
         })
     }
 
-    /// Accepts a key if it is for the current view and the first one for it.
+    /// Accepts a key if it is the first one for the current view.
     fn press(&mut self, body: &Value) {
         let step = body.get("step").and_then(Value::as_u64);
         let name = body.get("key").and_then(Value::as_str).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The plan of a study: the order of every participant.
+//! The plan of a study: the order of trials for every participant.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use crate::study::Study;
 use crate::study::file::{Order, Phase};
 use crate::study::random::Dice;
 
-/// The order of trials for every participant, determined only by the study file.
+/// The order of trials for every participant. Only the study file determines it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// Version of the study's format.
@@ -32,7 +32,7 @@ pub struct ParticipantPlan {
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Trial {
-    /// Number within its phase, from 1.
+    /// Number of the trial within its phase, from 1.
     pub number: u32,
     pub texture: String,
     pub model: String,
@@ -56,7 +56,7 @@ impl Plan {
         }
     }
 
-    /// Returns a participant's plan; `None` if the study has no participant with this name.
+    /// Returns a participant's plan, or `None` if the study has no participant with this name.
     pub fn participant(&self, name: &str) -> Option<&ParticipantPlan> {
         let mut all = self.participants.iter();
         all.find(|plan| plan.participant == name)
@@ -74,12 +74,13 @@ impl ParticipantPlan {
     }
 }
 
-/// Draws practice trials at random. Every condition occurs before any occurs twice.
+/// Draws practice trials at random. No condition occurs twice before every condition has occurred
+/// once.
 fn training(study: &Study, name: &str) -> Vec<Trial> {
     if !study.has(Phase::Training) {
         return Vec::new();
     }
-    // Each phase has dice of its own, so a change of one phase leaves the others as they are.
+    // Each phase has its own random numbers, so a change of one phase does not change the others.
     let mut dice = Dice::new(study.seed, &["training", name]);
     let mut drawn = Vec::new();
     while drawn.len() < study.training.trials as usize {
@@ -115,7 +116,7 @@ fn trials(study: &Study, order: &[Condition]) -> Vec<Trial> {
     order.iter().enumerate().map(trial).collect()
 }
 
-/// A texture in a model, both as indices. The model index after the last model is the hidden
+/// A texture in a model, both as indices. The index after the last model stands for the hidden
 /// reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Condition {
@@ -190,17 +191,18 @@ fn rows(
 }
 
 /// Returns a Latin square: n rows of n symbols, with each symbol once in each row and in each
-/// column. The columns of a cyclic square are permuted at random (always in the same way), because
-/// in a cyclic square each symbol would always follow the same one. `rows` shuffles the rows.
+/// column. It is a cyclic square whose columns are permuted by random numbers, always in the same
+/// way. In a cyclic square itself, each symbol would always follow the same one. `rows` shuffles
+/// the rows.
 fn latin(count: usize) -> Vec<Vec<usize>> {
     let columns = Dice::new(count as u64, &["columns"]).permutation(count);
     let row = |row| columns.iter().map(|at| (row + at) % count).collect();
     (0..count).map(row).collect()
 }
 
-/// Returns a Williams square: n rows for an even number of symbols, 2n for an odd one. Each ordered
-/// pair of different symbols is adjacent equally often (Williams 1949, "Experimental designs
-/// balanced for the estimation of residual effects of treatments").
+/// Returns a Williams square: n rows for an even number n of symbols, 2n rows for an odd number.
+/// Each ordered pair of different symbols is adjacent equally often (Williams 1949, "Experimental
+/// designs balanced for the estimation of residual effects of treatments").
 fn williams(count: usize) -> Vec<Vec<usize>> {
     // 0, 1, n-1, 2, n-2, …: all differences between neighbours are different.
     let first: Vec<usize> = (0..count)
@@ -212,8 +214,8 @@ fn williams(count: usize) -> Vec<Vec<usize>> {
         .collect();
     let row = |add: usize| first.iter().map(|at| (at + add) % count).collect();
     let mut rows: Vec<Vec<usize>> = (0..count).map(row).collect();
-    // For an odd number, the rows alone do not balance which symbol follows which; their mirror
-    // images do.
+    // For an odd number, the rows alone do not balance which symbol follows which. Their mirror
+    // images complete the balance.
     if count % 2 == 1 {
         let mirrored: Vec<Vec<usize>> =
             rows.iter().map(|row| row.iter().rev().copied().collect()).collect();

@@ -1,7 +1,7 @@
-//! Computes how far a session is, from its plan and its lines.
+//! Computes the progress of a session from its plan and the lines of its file.
 //!
-//! Neither the plan nor the progress is stored, so that a session that was killed cannot disagree
-//! with its file.
+//! Neither the plan nor the progress is stored. So they cannot disagree with the file after a
+//! session was killed.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -16,10 +16,10 @@ const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 /// The next step of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// A trial is rated by an attribute. It is played first, unless it has just been played.
+    /// A trial is rated by one attribute. The trial is played first, unless it was just played.
     Rate(Phase, Trial, Attribute),
-    /// The level of a texture rises until it is felt, before its first practice trial; or its gain
-    /// is matched.
+    /// The level of a texture rises until the participant feels it, before the texture's first
+    /// practice trial, or the texture's gain is matched.
     Match {
         phase: Phase,
         texture: String,
@@ -29,9 +29,9 @@ pub enum Step {
         matching: Match,
     },
     Rest {
-        /// Number of trials before it.
+        /// Number of trials before the rest.
         after: u32,
-        /// Shortest length, seconds.
+        /// Shortest length of the rest, seconds.
         seconds: f64,
     },
     Done,
@@ -101,8 +101,8 @@ impl Progress {
         }
         let trials_done = self.answers / study.attributes.len().max(1);
         let is_between = self.answers.is_multiple_of(study.attributes.len().max(1));
-        // A rest comes only between two trials: not between two questions about one, and not after
-        // the last.
+        // A rest comes only between two trials, not between two questions about one trial, and not
+        // after the last trial.
         let left = plan.trials.len() - trials_done.min(plan.trials.len());
         if let Some(rests) = study.rests.as_ref().filter(|_| is_between && left > 0) {
             let due = trials_done as u32 / rests.every.max(1);
@@ -113,7 +113,8 @@ impl Progress {
         rate(Phase::Testing, &plan.trials, self.answers, study).unwrap_or(Step::Done)
     }
 
-    /// Returns the rise of a texture that has not been felt before its practice trial.
+    /// If the next step is a practice trial of a texture that the participant has not felt yet,
+    /// returns the rise of this texture.
     fn rise_before(&self, step: &Step) -> Option<Step> {
         let Step::Rate(Phase::Training, trial, _) = step else {
             return None;
@@ -168,7 +169,8 @@ impl Progress {
                 stops(&step, stopped)?;
                 self.stops += 1;
                 self.last_ms = line.at_ms();
-                // The end of this function would set the number of stops to 0 again.
+                // Returns early, because the end of this function would set the number of stops to
+                // 0.
                 return Ok(());
             }
             (Step::Rest { after, .. }, Line::Rest { after: is, .. }) if after == *is => {
@@ -213,10 +215,10 @@ impl Level {
         }
     }
 
-    /// Applies a key. The level after it must be `gain_db`. Otherwise the line was written under
-    /// other rules, and nobody knows what was felt.
+    /// Applies a key. The level afterwards must be `gain_db`. Otherwise the line was written under
+    /// other rules, and it is unknown what was felt.
     fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
-        // On a copy, so that a line that does not fit changes nothing.
+        // Works on a copy, so that a line that does not fit changes nothing.
         let mut pressed = self.matching.clone();
         if !pressed.press(key) {
             return Err(format!("this key for {} does not come next", self.texture));
@@ -275,7 +277,7 @@ fn stops(step: &Step, line: &Stop) -> Result<(), String> {
     if is_this { Ok(()) } else { Err(format!("{texture} with {model} does not play here")) }
 }
 
-/// Returns the next rating of a phase after `ratings` ratings; `None` at its end.
+/// Returns the next rating of a phase after `ratings` ratings, or `None` at the end of the phase.
 fn rate(phase: Phase, trials: &[Trial], ratings: usize, study: &Study) -> Option<Step> {
     let each = study.attributes.len().max(1);
     let trial = trials.get(ratings / each)?.clone();

@@ -1,4 +1,5 @@
-//! Random numbers of a study. Each purpose has its own generator, so that none depends on another.
+//! Random numbers of a study. Each purpose has its own generator, so that its numbers do not depend
+//! on those of other purposes.
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,7 +14,8 @@ impl Dice {
         let mut hash = blake3::Hasher::new();
         hash.update(&seed.to_le_bytes());
         for part in purpose {
-            // The length keeps the parts apart: `ab`, `c` must not give the numbers of `a`, `bc`.
+            // The length separates the parts: `ab`, `c` must not give the same numbers as `a`,
+            // `bc`.
             hash.update(&(part.len() as u64).to_le_bytes());
             hash.update(part.as_bytes());
         }

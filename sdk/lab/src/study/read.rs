@@ -36,8 +36,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a study and checks it without the files it names. If it cannot be used, adds a finding
-/// with the reason and returns `None`. Never panics.
+/// Reads a study and checks it, but not the files that it names. If the study cannot be used, adds
+/// a finding with the reason and returns `None`. Never panics.
 pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
     if bytes.len() > MOST_BYTES {
         let message = format!("the study has more than {MOST_BYTES} bytes");
@@ -50,7 +50,7 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
         findings.add(rule::STUDY_VERSION_MISSING, "", message.to_owned());
         return None;
     }
-    // As JSON, the study is checked by the same code as a scene.
+    // Converted to JSON, so that the same code checks studies and scenes.
     let json = serde_json::to_vec(&value).ok()?;
     let opened = DOCUMENT.open(&json, MOST_DEPTH, findings)?;
     if opened.newer {
@@ -78,7 +78,7 @@ fn parse(bytes: &[u8], findings: &mut Findings) -> Option<Value> {
     None
 }
 
-/// Reports settings for phases that do not take place.
+/// Adds findings for settings of phases that do not take place.
 fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     for (key, phase) in [("training", Phase::Training), ("gain", Phase::Gain)] {
         let unused = value.get(key).is_some() && !study.has(phase);
@@ -91,7 +91,7 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
 
 /// Checks the files, motion and device of a study by the rules of scenes: each texture is opened in
 /// each model as it will be played. `path` is the study's file. `device` is the device with which
-/// the study is run; a rehearsal checks the study's own.
+/// the study runs; without one, the study's own device is checked.
 pub fn check_files(
     study: &Study,
     path: &Path,
@@ -105,7 +105,7 @@ pub fn check_files(
             let found = match Scene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
                 Err(SceneError::Invalid { findings }) => findings,
-                // This is a scene in memory, so no file can fail to be read.
+                // The scene is in memory, so no file can fail to be read.
                 Err(_) => Vec::new(),
             };
             for mut finding in found {
@@ -170,7 +170,7 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
     check_numbers(study, findings);
     check_matching(&study.gain, findings);
     let scale = &study.scale;
-    // Participants answer with one digit key.
+    // Participants answer with a single digit key.
     let sound = scale.min < scale.max && scale.max <= 9;
     findings.require(sound, rule::STUDY_SCALE_INVALID, "/scale", || {
         let (min, max) = (scale.min, scale.max);
@@ -231,7 +231,8 @@ fn check_models(study: &Study, findings: &mut Findings) {
         study.hidden_reference.iter().map(|model| ("/hidden_reference".to_owned(), model));
     let gain = [("/gain/model".to_owned(), &study.gain.model)];
     for (pointer, model) in named.chain(reference).chain(gain) {
-        // With `auto` the planner would choose, and two conditions could be the same model.
+        // With `auto` the planner would choose the model, so two conditions could have the same
+        // model.
         findings.require(model != "auto", rule, pointer, || {
             "auto is no model of a study; name one".to_owned()
         });

@@ -1,4 +1,4 @@
-//! Runs a session: plays, shows and asks.
+//! Runs a session: plays trials, shows views and asks questions.
 
 use std::time::Duration;
 
@@ -15,9 +15,9 @@ use crate::study::stimulus::Stimulus;
 
 /// Time between two checks for keys while nothing plays.
 const LOOK: Duration = Duration::from_millis(5);
-/// How many times something is played again after the device ran dry. If another program takes the
-/// processor for a moment, this seldom happens three times in a row. A buffer that is too small
-/// runs dry every time.
+/// How many times a stimulus is played again after the device ran out of samples. If this happens
+/// because another program takes the processor for a moment, it seldom happens three times in a
+/// row. With a buffer that is too small, it happens every time.
 const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
@@ -25,7 +25,7 @@ const MOST_REPEATS: u32 = 2;
 pub enum SessionEnd {
     /// The session is over.
     Done,
-    /// It was left before its end, and continues when it is run again.
+    /// The session was left before its end. It continues when it is run again.
     Left,
 }
 
@@ -78,10 +78,10 @@ struct Run<'r, 's, R: Rig> {
     asker: &'r mut dyn Asker,
     clock: &'r mut dyn Clock,
     simulated: Option<&'r SimulatedParticipant>,
-    /// What was felt last, by its file name: a trial before its questions, or a texture that is
-    /// being matched.
+    /// The stimulus that was played last, by its file name: a trial before its questions, or a
+    /// texture that is being matched.
     felt: Option<(Phase, String)>,
-    /// How the trial that was felt last was played.
+    /// How the last trial was played.
     presented: Presentation,
     /// Notice for the next view.
     notice: Option<String>,
@@ -93,7 +93,7 @@ impl<R: Rig> Run<'_, '_, R> {
         self.asker.show(view, done, all);
     }
 
-    /// Waits for a key that has a meaning here; `None` if the session is left.
+    /// Waits for a key to which `meaning` gives a meaning. Returns `None` if the session is left.
     fn wait<T>(&mut self, mut meaning: impl FnMut(Key) -> Option<T>) -> Option<T> {
         loop {
             if self.rig.is_interrupted() {
@@ -111,7 +111,7 @@ impl<R: Rig> Run<'_, '_, R> {
         }
     }
 
-    /// Waits for the key that begins something; false if the session is left.
+    /// Waits for the key that begins a trial or a matching. Returns false if the session is left.
     fn ready(&mut self, phase: Phase, texture: &str) -> bool {
         if self.simulated.is_some() {
             return true;
@@ -125,7 +125,7 @@ impl<R: Rig> Run<'_, '_, R> {
     fn rate(&mut self, phase: Phase, trial: &Trial, asked: &Attribute) -> Result<bool, R::Error> {
         let stimulus = self.session.stimulus(phase, trial);
         let this = (phase, stimulus.file.clone());
-        // A trial with several questions is felt only once.
+        // A trial with several questions is played only once.
         if self.felt.as_ref() != Some(&this) {
             if !self.play(phase, &stimulus)? {
                 return Ok(false);
@@ -141,8 +141,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Plays a trial to its end, and starts it again if the device ran dry; false if the session is
-    /// left.
+    /// Plays a trial to its end, and starts it again if the device ran out of samples. Returns
+    /// false if the session is left.
     fn play(&mut self, phase: Phase, stimulus: &Stimulus) -> Result<bool, R::Error> {
         self.presented = Presentation::default();
         let mut left = false;
@@ -153,7 +153,7 @@ impl<R: Rig> Run<'_, '_, R> {
             let texture = stimulus.texture.clone();
             self.show(&View::Playing { texture });
             let mut ends = |asker: &mut dyn Asker| {
-                // Remembered, because the rig may ask once more after it was told to end.
+                // Stored, because the rig may call this again after it was told to end.
                 left |= asker.key() == Some(Key::Quit);
                 left
             };
@@ -177,7 +177,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Records that something was left while it played. Returns false, which ends the session.
+    /// Records that a stimulus was stopped while it played, because the session is left. Returns
+    /// false, which ends the session.
     fn stopped(&mut self, left: bool, played: Playback) -> Result<bool, R::Error> {
         let reason = if left { StopReason::Left } else { StopReason::Interrupted };
         let at_ms = self.clock.now_ms();
@@ -186,10 +187,10 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(false)
     }
 
-    /// Records that something ended with an error while it played.
+    /// Records that a stimulus ended with an error while it played.
     fn failed(&mut self, error: &R::Error) -> Result<(), R::Error> {
         let reason = if R::ran_dry(error) { StopReason::RanDry } else { StopReason::Failed };
-        // If the device was never given anything, this does not count as a stop.
+        // If nothing was written to the device, this does not count as a stop.
         if let Some((drive_v, output)) = self.rig.output_before_error() {
             let at_ms = self.clock.now_ms();
             self.session.stopped(reason, drive_v, Some(output), at_ms)?;
@@ -197,8 +198,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(())
     }
 
-    /// Plays once. `None` if the device ran dry and it must be played again; [`Presentation::repeats`]
-    /// counts this.
+    /// Plays a stimulus once. Returns `None` if the device ran out of samples, so that it must be
+    /// played again. [`Presentation::repeats`] counts this.
     fn attempt(
         &mut self,
         stimulus: &Stimulus,
@@ -359,7 +360,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(!self.rig.is_interrupted())
     }
 
-    /// Counts down, then waits for the key that continues; false if the session is left.
+    /// Counts down the rest, then waits for the key that continues. Returns false if the session is
+    /// left.
     fn rested(&mut self, end_ms: u64) -> bool {
         let mut shown = None;
         loop {

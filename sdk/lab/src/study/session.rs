@@ -1,4 +1,4 @@
-//! A session: one participant's way through a plan.
+//! A session: takes one participant through the plan of a study.
 
 use std::path::Path;
 
@@ -37,16 +37,16 @@ pub struct Presentation {
     pub drive_v: Option<f64>,
     /// Levels that the device was given.
     pub output: Option<OutputLevels>,
-    /// How many times it was stopped before, for any reason.
+    /// How many times the trial was stopped before, for any reason.
     pub stops: u32,
-    /// The recording of what was felt, if there is one.
+    /// The recording of the felt force, if there is one.
     pub felt: Option<FeltFile>,
-    /// How many times it was begun before and ended because the device ran dry.
+    /// How many times the trial was begun before and ended because the device ran out of samples.
     pub repeats: u32,
 }
 
 impl<'a> Session<'a> {
-    /// Opens a session in a folder: a new session, or one that continues where it ended.
+    /// Opens a session in a folder. It starts a new session, or continues a session where it ended.
     ///
     /// # Errors
     /// The errors of [`Log::open`], and [`LabError::Line`] if a line does not belong to the plan.
@@ -102,7 +102,7 @@ impl<'a> Session<'a> {
         self.is_simulated
     }
 
-    /// Returns the number of rated trials, and the number of all trials.
+    /// Returns the number of rated trials, and the total number of trials.
     pub fn trials(&self) -> (usize, usize) {
         let each = self.study.attributes.len().max(1);
         (self.progress.answers() / each, self.plan.trials.len())
@@ -113,7 +113,7 @@ impl<'a> Session<'a> {
         self.progress.last_ms()
     }
 
-    /// Returns what a trial plays.
+    /// Returns the stimulus of a trial.
     pub fn stimulus(&self, phase: Phase, trial: &Trial) -> Stimulus {
         let found = self.progress.found(phase, &trial.texture);
         let name = match phase {
@@ -132,7 +132,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns what plays while the level of a texture rises or its gain is matched.
+    /// Returns the stimulus that plays while the level of a texture rises or its gain is matched.
     pub(crate) fn matching_stimulus(
         &self,
         phase: Phase,
@@ -163,7 +163,8 @@ impl<'a> Session<'a> {
 
     /// Returns a seed for the samples of one trial of one participant.
     fn seed(&self, what: &str, number: u32) -> u64 {
-        // It depends on names and trial numbers, so a continued session plays the same samples.
+        // The seed depends only on names and trial numbers, so a continued session plays the same
+        // samples.
         let purpose = ["samples", self.participant(), what, &number.to_string()];
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
@@ -268,8 +269,8 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records that the current stimulus was stopped before its end, and what the device was given
-    /// until then.
+    /// Records that the current stimulus was stopped before its end, with the levels that were
+    /// written to the device until then.
     ///
     /// # Errors
     /// The errors of [`Self::rate`].

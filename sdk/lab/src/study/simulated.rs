@@ -1,4 +1,5 @@
-//! Simulated participants, to try and to test a study. Every file that they write says so.
+//! Simulated participants, to try and to test a study. Every file with their answers states that
+//! they are simulated.
 
 use crate::study::file::{Phase, Scale};
 use crate::study::gain::{GainKey, Match};
@@ -11,15 +12,15 @@ const RULE: &str = "rating = top - span * e / (e + 6) + b + n, rounded and held 
     dB; b: bias of the participant, standard deviation 0.07 of the span; n: noise of the trial, 0.1 of the span";
 /// Nine-band error at which the rating is in the middle of the scale, dB.
 const MIDDLE_DB: f64 = 6.0;
-/// Standard deviations, as parts of the scale's span.
+/// Standard deviations, as fractions of the scale's span.
 const BIAS: f64 = 0.07;
 const NOISE: f64 = 0.1;
-/// Range of the gains that they accept, dB relative to the maximum.
+/// Range of the gains that simulated participants accept, dB relative to the maximum.
 const GAIN_DB: (f64, f64) = (-18.0, -2.0);
 
-/// A simulated participant. Its ratings fall with the nine-band error of the representation, the
-/// paper's best predictor of similarity. Each rating only depends on the seed, the participant and
-/// the trial, not on earlier ratings.
+/// A simulated participant. The larger the nine-band error of the representation, the lower are its
+/// ratings, because this error was the paper's best predictor of similarity. A rating depends only
+/// on the seed, the participant and the trial, not on earlier ratings.
 #[derive(Debug, Clone)]
 pub struct SimulatedParticipant {
     seed: u64,
@@ -32,13 +33,13 @@ impl SimulatedParticipant {
         Self { seed, name }
     }
 
-    /// Returns its entry in the header of answers.
+    /// Returns the participant's entry in the header of answers.
     pub fn header(&self) -> Simulated {
         Simulated { seed: self.seed, rule: RULE.split_whitespace().collect::<Vec<_>>().join(" ") }
     }
 
-    /// Returns its rating of a trial in a phase. `error_db` is the nine-band error of the
-    /// representation, dB.
+    /// Returns the participant's rating of a trial in a phase. `error_db` is the nine-band error of
+    /// the representation, dB.
     pub fn rating(
         &self,
         phase: Phase,
@@ -57,20 +58,20 @@ impl SimulatedParticipant {
         felt.round().clamp(low, top) as u8
     }
 
-    /// Returns the time that it takes to rate, milliseconds.
+    /// Returns the time that the participant takes for a rating, milliseconds.
     pub fn response_ms(&self, phase: Phase, trial: &Trial, attribute: &str) -> u64 {
         800 + self.dice("response", phase, trial, attribute).bits() % 1200
     }
 
-    /// Returns its next key while a texture's gain is matched. It wants a different gain for each
-    /// texture.
+    /// Returns the participant's next key while a texture's gain is matched. Each texture has a
+    /// different wanted gain.
     pub(crate) fn gain_key(&self, texture: &str, matching: &Match) -> GainKey {
         let mut dice = Dice::new(self.seed, &["gain", &self.name, texture]);
         let share = (dice.bits() >> 11) as f64 / (1u64 << 53) as f64;
         let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);
         let off_db = matching.gain_db() - wanted_db;
         if matching.is_rising() {
-            // Stop where the texture is at least as strong as the participant wants it.
+            // Stops where the texture is at least as strong as the participant wants it.
             return if off_db < 0.0 && matching.gain_db() < 0.0 {
                 GainKey::MuchStronger
             } else {

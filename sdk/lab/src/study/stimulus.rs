@@ -1,4 +1,5 @@
-//! What a trial plays: a scene with one surface, and its gain. What the device was given by it.
+//! The stimulus of a trial: a scene with one surface, and its gain. Also measures the levels that
+//! are written to the device.
 
 use std::path::Path;
 
@@ -9,8 +10,8 @@ use htex_scene::file::{DeviceChoice, Levels, Surface};
 use crate::study::file::Study;
 use crate::study::lines::OutputLevels;
 
-/// Level of a sound that counts as the maximum if the study names none, decibels relative to full
-/// scale.
+/// Level of a sound that counts as the maximum if the study does not set one, decibels relative to
+/// full scale.
 const SOUND_DBFS: f64 = -18.0;
 
 /// A texture in a model, and how it is played.
@@ -18,19 +19,20 @@ const SOUND_DBFS: f64 = -18.0;
 pub struct Stimulus {
     pub texture: String,
     pub model: String,
-    /// Length, seconds. `None`: it plays until it is stopped.
+    /// Length, seconds. `None` plays until the stimulus is stopped.
     pub seconds: Option<f64>,
     /// Seed for its random numbers.
     pub seed: u64,
-    /// Gain relative to the maximum, decibels. `None`: at the level of the study's device.
+    /// Gain relative to the maximum, decibels. `None` plays at the level that the study's device
+    /// sets.
     pub gain_db: Option<f64>,
     /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are
     /// `own`.
     pub reference_rms: Option<f64>,
-    /// Name of the recording of what is felt, without extension; `None` if it is not recorded.
+    /// Name of the recording of the felt force, without extension. `None` if it is not recorded.
     pub felt: Option<String>,
-    /// Name of the file to which it is played, if it is: `rise-vinyl`, `training-0003`,
-    /// `gain-vinyl`, `trial-0017`.
+    /// Name of the file to which the stimulus is played, if the device writes files: `rise-vinyl`,
+    /// `training-0003`, `gain-vinyl`, `trial-0017`.
     pub file: String,
 }
 
@@ -51,7 +53,7 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
-/// Returns the drive of a display if no gain is set, volts: `drive_v` of the study, or the
+/// Returns the drive of a display without a gain, volts: the study's `drive_v` or, without it, the
 /// display's limit.
 pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     let is_display = able.quantity == Quantity::DisplayVoltage;

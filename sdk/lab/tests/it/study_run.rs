@@ -1,4 +1,4 @@
-//! Running a session with a rig that fails and a finger that leaves its target.
+//! Tests of sessions with a rig that fails, and with a finger that leaves its target.
 
 use std::cell::RefCell;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Measures the time for each sample of an imported texture that follows a finger: cargo run
-//! --release -p htex-exchange --example live FILE.xml
+//! Measures how long a voice takes per sample, for an imported texture that follows a finger: cargo
+//! run --release -p htex-exchange --example live FILE.xml
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Time of a run that renders `samples` samples at a time, seconds.
+/// Returns the time of a run, seconds. The run renders `samples` samples at a time.
 fn run_s(asset: &Texture, samples: usize, moves: bool) -> Result<f64, Box<dyn std::error::Error>> {
     let options =
         VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Motion::new(100.0, 1.0));

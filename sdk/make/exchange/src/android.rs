@@ -1,12 +1,12 @@
-//! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, written as JSON
-//! and as Kotlin.
+//! Reads and writes Android's `VibrationEffect` as JSON, and writes it as Kotlin code. An effect
+//! has a waveform of levels, and the envelopes of API level 36.
 //!
-//! Rules from the documentation: a waveform has timings in milliseconds, and amplitudes between 0
-//! and 255. `VibratorEnvelopeEffectInfo` states the shortest duration of a control point and the
-//! largest number of points in an envelope; it guarantees 16 points of 20 ms to 1 s. An envelope of
-//! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
-//! relative to the strongest vibration at the frequency. The JSON is this project's own, because
-//! Android has no file format for effects.
+//! These rules come from Android's documentation. A waveform has timings in milliseconds, and
+//! amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states a device's shortest duration
+//! of a control point and largest number of points in an envelope. Every device supports at least
+//! 16 points of 20 ms to 1 s. An envelope of `BasicEnvelopeBuilder` ends at the intensity 0. The
+//! amplitude of `WaveformEnvelopeBuilder` is relative to the strongest vibration at the frequency.
+//! The JSON format is this project's own, because Android has no file format for effects.
 
 use htex_format::Rights;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ use crate::profile::Profile;
 pub(crate) const LONGEST_POINT_MS: u64 = 1_000;
 const FORMAT: &str = "android.os.VibrationEffect";
 
-/// An effect in three forms, of which a device uses one.
+/// The same effect in three forms. A device plays one of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Android {
@@ -105,8 +105,8 @@ impl Android {
     /// Reads an effect from JSON.
     ///
     /// # Errors
-    /// When it is not JSON, has another structure, or breaks a rule of Android's builders. The
-    /// fault names the place.
+    /// When the file is not JSON, has another structure, or breaks a rule of Android's builders.
+    /// The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let effect: Self = json::read(bytes)?;
         if effect.format != FORMAT {
@@ -145,7 +145,7 @@ impl Android {
     /// duration.
     ///
     /// # Errors
-    /// When the device would refuse an envelope or a point; the fault names it.
+    /// When the device would refuse an envelope or a point. The fault names this envelope or point.
     pub fn check_device(&self, profile: &Profile) -> Result<(), Fault> {
         let waveform = self.waveform_envelope.control_points.iter();
         let basic = self.basic_envelope.control_points.iter();
@@ -188,8 +188,8 @@ impl Android {
         }
     }
 
-    /// Writes three Kotlin functions that build the effect. The texture's `name` becomes part of
-    /// their names.
+    /// Writes three Kotlin functions, one for each form of the effect. The texture's `name` becomes
+    /// part of the functions' names.
     #[must_use]
     pub(crate) fn to_kotlin(&self, name: &str) -> Vec<u8> {
         let name = identifier(name);
@@ -226,7 +226,8 @@ impl Android {
     }
 }
 
-/// Kotlin code for an effect built by one of Android's envelope builders.
+/// Returns the Kotlin code of a function that builds an effect with one of Android's envelope
+/// builders.
 fn builder(name: &str, first: &str, points: impl Iterator<Item = (f64, f64, u64)>) -> String {
     let point =
         |(a, b, ms): (f64, f64, u64)| format!("        .addControlPoint({a}f, {b}f, {ms}L)\n");
@@ -275,12 +276,12 @@ fn joined<T: ToString>(values: impl Iterator<Item = T>) -> String {
     values.join(", ")
 }
 
-/// A Kotlin name: ASCII letters and digits in camel case.
+/// Converts a name to a Kotlin identifier: ASCII letters and digits in camel case.
 fn identifier(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let mut identifier = String::new();
     for word in words {
-        // A split inside a character would panic, but words hold only ASCII.
+        // Splitting inside a character would panic, but words contain only ASCII.
         let (first, rest) = word.split_at(1);
         if identifier.is_empty() {
             identifier.push_str(&first.to_ascii_lowercase())
@@ -289,7 +290,8 @@ fn identifier(name: &str) -> String {
         }
         identifier.push_str(rest);
     }
-    // A Kotlin name must not begin with a digit, and a name of other scripts leaves nothing.
+    // A Kotlin identifier must not begin with a digit. It is also empty if the name has only
+    // letters of other scripts.
     if identifier.starts_with(|c: char| c.is_ascii_alphabetic()) {
         identifier
     } else {

@@ -1,4 +1,4 @@
-//! Curves of straight lines between points in time, which all envelope formats use.
+//! Curves that all envelope formats use: points in time, with straight lines between them.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,9 +17,10 @@ impl Point {
     }
 }
 
-/// Returns the value of a curve at a time, linear between points. Before the first point it is the
-/// first point's value, after the last point the last one's. If several points have the same time,
-/// the last of them counts. `None` if there are no points.
+/// Returns the value of a curve at a time, or `None` if the curve has no points. The value is
+/// interpolated linearly between points. Before the first point it is the value of the first point,
+/// and after the last point the value of the last point. If several points have the same time, the
+/// last of them counts.
 ///
 /// ```
 /// use htex_exchange::{Point, value_at};
@@ -34,8 +35,8 @@ pub fn value_at(curve: &[Point], time_s: f64) -> Option<f64> {
     let before = after.checked_sub(1).and_then(|index| curve.get(index));
     match (before, curve.get(after)) {
         (Some(a), Some(b)) => {
-            // `b` is later than `time_s` and `a` is not, so they differ even where points share a
-            // time.
+            // `b` is later than `time_s` and `a` is not. So their times differ, even if other
+            // points share a time.
             let part = (time_s - a.time_s) / (b.time_s - a.time_s);
             Some(a.value + part * (b.value - a.value))
         }
@@ -44,7 +45,7 @@ pub fn value_at(curve: &[Point], time_s: f64) -> Option<f64> {
     }
 }
 
-/// Reads a curve at ascending times.
+/// Evaluates a curve at ascending times.
 pub(crate) struct Reader<'a> {
     curve: &'a [Point],
     after: usize,
@@ -55,7 +56,8 @@ impl<'a> Reader<'a> {
         Self { curve, after: 0 }
     }
 
-    /// As [`value_at`], but in constant time on average if the times ascend.
+    /// Returns the same as the function [`value_at`], but takes constant time on average if the
+    /// times ascend.
     pub(crate) fn value_at(&mut self, time_s: f64) -> Option<f64> {
         while (self.curve.get(self.after)).is_some_and(|point| point.time_s <= time_s) {
             self.after += 1;
@@ -66,14 +68,16 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Leaves out points that lie within `tolerance` of the straight line between the points that stay
-/// (Ramer 1972; Douglas & Peucker 1973).
+/// Returns a curve with fewer points. It leaves out points that lie within `tolerance` of the
+/// straight line between the remaining points (Ramer 1972; Douglas & Peucker 1973).
 #[must_use]
 pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     let mut keeps = vec![false; curve.len()];
-    // `first` is `false`, as all flags are; the pattern makes sure that there is a point.
+    // `first` is only matched to make sure that there is a point; its value is `false`, like all
+    // flags.
     if let (Some(first), Some(last)) = (keeps.first().copied(), curve.len().checked_sub(1)) {
-        // A stack and not recursion, which a curve of thousands of points could drive as deep.
+        // An explicit stack is used, because a curve of thousands of points could recurse thousands
+        // of levels deep.
         let mut open = vec![(0, last)];
         keeps.iter_mut().take(1).for_each(|keep| *keep = !first);
         keeps.iter_mut().skip(last).for_each(|keep| *keep = true);
@@ -88,8 +92,8 @@ pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     kept.map(|(point, _)| *point).collect()
 }
 
-/// The point between two others that is furthest from the line between them, if it is further than
-/// the tolerance.
+/// Returns the point between two others that is furthest from the line between them, if its
+/// distance exceeds the tolerance.
 fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<usize> {
     let (a, b) = (curve.get(from)?, curve.get(to)?);
     let ends = [*a, *b];
@@ -104,8 +108,8 @@ fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<u
     (most > tolerance).then_some(at)
 }
 
-/// The value of a curve at a time, or just before that time. The two differ where two points have
-/// this time.
+/// Returns the value of a curve at a time or, if `before` is true, just before that time. Both
+/// differ if two points have this time.
 pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
     let first_here = curve.partition_point(|point| point.time_s < time_s);
     match curve.get(first_here) {

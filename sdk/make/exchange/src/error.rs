@@ -1,9 +1,8 @@
-//! Errors of import and export. Each says what is wrong, where in the file it is wrong, and what to
-//! do.
+//! Errors of import and export. Each states what is wrong, where in the file, and what to do.
 
 use htex_author::AuthorError;
 
-/// What is wrong in a file, and at which place.
+/// A fault in a file: what is wrong, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{problem}", place_of(.place))]
 pub struct Fault {
@@ -17,11 +16,12 @@ fn place_of(place: &str) -> String {
     if place.is_empty() { String::new() } else { format!("{place}: ") }
 }
 
-/// Longest place or problem, characters, since both may quote the file.
+/// Longest text of a place or a problem, characters. Both are limited because they may quote the
+/// file.
 const MOST_QUOTED: usize = 500;
 
-/// Makes one line of a text that may quote a file: keeps its beginning and removes characters that
-/// control a terminal.
+/// Makes a text that may quote a file safe to print. Keeps its beginning, joins its lines, and
+/// removes characters that control a terminal.
 fn quoted(text: &str) -> String {
     let mut shown: String = text.chars().take(MOST_QUOTED).collect();
     if shown.len() < text.len() {
@@ -35,7 +35,7 @@ impl Fault {
         Self { place: quoted(place.as_ref()), problem: quoted(problem.as_ref()) }
     }
 
-    /// A fault of the whole file.
+    /// Makes a fault that concerns the whole file.
     pub(crate) fn whole(problem: impl AsRef<str>) -> Self {
         Self::new("", problem)
     }
@@ -52,10 +52,11 @@ pub enum ExchangeError {
         /// The formats that can be imported, with their extensions.
         there: String,
     },
-    /// The file is not what its format says.
+    /// The file is not valid in its format.
     #[error("{file}: {fault}")]
     File { file: String, fault: Fault },
-    /// The format does not contain what an asset needs, and the user did not give it either.
+    /// An asset needs something that the format does not contain, and the user did not give it
+    /// either.
     #[error("{}", not_said(.format, .missing, &keyword))]
     Missing { format: &'static str, missing: Vec<Missing> },
     /// A given setting does not apply to this format.
@@ -66,7 +67,7 @@ pub enum ExchangeError {
         way: &'static str,
         /// The setting as a keyword, such as `full_scale`.
         setting: String,
-        /// The settings that the format takes.
+        /// The settings that the format accepts.
         takes: Vec<&'static str>,
     },
     /// A given number is out of range.
@@ -77,18 +78,19 @@ pub enum ExchangeError {
         value: f64,
         range: &'static str,
     },
-    /// The file, the asset in it and the `.license` file beside it state different rights.
+    /// The file, the asset inside it and the `.license` file next to it state different licences or
+    /// authors.
     #[error("{}", disagree(.setting, .stated, &keyword))]
     Rights {
         /// `license` or `author`.
         setting: &'static str,
-        /// What each of them states.
+        /// What each of these files states.
         stated: String,
     },
     /// No actuator profile has this name.
     #[error("there is no profile `{wanted}`; there are {there}")]
     UnknownProfile { wanted: String, there: String },
-    /// The actuator cannot play this kind of file.
+    /// The actuator cannot play files of this format.
     #[error(
         "{profile} is a motor whose frequency follows its level, and {format} holds samples; choose {instead}"
     )]
@@ -98,7 +100,7 @@ pub enum ExchangeError {
         /// Formats that the actuator can play.
         instead: String,
     },
-    /// The format cannot hold this texture.
+    /// The format cannot store this texture.
     #[error("{format}: {problem}")]
     Cannot { format: &'static str, problem: String },
     /// The asset cannot be played.
@@ -113,19 +115,19 @@ pub enum ExchangeError {
     Author(#[from] AuthorError),
 }
 
-/// A fact that a format does not contain and the user has to give.
+/// Something that the files of a format do not state, so that the user must give it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Missing {
     /// The setting as a keyword, such as `full_scale`.
     pub setting: &'static str,
-    /// What it is, as a phrase for messages.
+    /// Description for messages, as a phrase.
     pub words: &'static str,
 }
 
 impl ExchangeError {
-    /// Returns the message with settings named as a program names them. `named` is given a keyword
-    /// such as `full_scale`.
+    /// Returns the message with a program's own names for settings. `named` converts a keyword such
+    /// as `full_scale` to the program's name.
     ///
     /// ```
     /// use htex_exchange::{Format, Physical};
@@ -190,7 +192,7 @@ pub(crate) fn list(parts: impl Iterator<Item = String>) -> String {
     }
 }
 
-/// The error of a file with a fault.
+/// Returns a function that adds the file's name to a fault.
 pub(crate) fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
     move |fault| ExchangeError::File { file: file.to_owned(), fault }
 }

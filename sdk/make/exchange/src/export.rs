@@ -1,4 +1,4 @@
-//! Export of assets to files of other formats, with a report of what is lost.
+//! Exports assets to files of other formats, and reports what is lost.
 
 use htex_play::Texture;
 use serde::Serialize;
@@ -11,39 +11,41 @@ use crate::loss::{Loss, loss};
 use crate::map;
 use crate::profile::Profile;
 
-/// Shortest and longest export, seconds. Reading a texture's spectrum takes 0.2 s.
+/// Shortest and longest export, seconds. Computing a texture's spectrum needs samples of at least
+/// 0.2 s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
 /// Highest sample rate of an export, hertz.
 const MOST_RATE_HZ: f64 = 192_000.0;
 
-/// What is exported, and how.
+/// Settings of an export.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Export<'a> {
     pub format: &'static Format,
-    /// The representation, by its model's id or short name. By default the one with the smallest
-    /// nine-band error.
+    /// Id or short name of the model whose representation is exported. By default the
+    /// representation with the smallest nine-band error.
     pub model: Option<&'a str>,
     pub path: Path,
-    /// The actuator; by default the format's own.
+    /// The actuator for which the file is made; by default the format's default actuator.
     pub profile: Option<&'a Profile>,
-    /// Length of an export at a condition, seconds. A stroke has its own length.
+    /// Length of an export at a condition, seconds. It does not apply to a stroke, which has its
+    /// own length.
     pub seconds: f64,
-    /// Sample rate of a WAV, hertz; by default 8000.
+    /// Sample rate of a WAV file, hertz; by default 8000.
     pub rate_hz: Option<f64>,
-    /// Coding of `.hjif`; by default [`Coding::Vectorial`].
+    /// How an `.hjif` file codes the texture; by default [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// Which of the format's extensions is written: Kotlin or JSON, `.gltf` or `.glb`. By default
-    /// the format's first.
+    /// Which of the format's kinds of file is written, by its extension: Kotlin or JSON, `.gltf` or
+    /// `.glb`. By default the format's first extension.
     pub extension: Option<&'a str>,
-    /// The asset's file. An export of the asset itself contains it bit for bit; without it, the
-    /// asset is written anew.
+    /// The bytes of the asset's file. A format that stores the asset itself then contains these
+    /// bytes unchanged. Without them, the asset is written anew.
     pub file: Option<&'a [u8]>,
     pub seed: u64,
 }
 
 impl<'a> Export<'a> {
-    /// Exports two seconds at the asset's default condition.
+    /// Creates the settings for an export of two seconds at the asset's default condition.
     #[must_use]
     pub fn new(format: &'static Format) -> Self {
         Self {
@@ -88,7 +90,7 @@ impl<'a> Export<'a> {
         self.rate_hz.unwrap_or(RATE_HZ)
     }
 
-    /// The settings that are set, as keywords.
+    /// Returns the keywords of the settings that were set.
     fn given(&self) -> Vec<&'static str> {
         let (is_stroke, is_moved) = match &self.path {
             Path::Stroke(_) => (true, false),
@@ -115,20 +117,21 @@ pub struct ExportedFile {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
-    /// How an actuator played the file; `None` if no actuator plays it.
+    /// The actuator, and how well it can play the file; `None` if no actuator plays files of this
+    /// format.
     #[serde(flatten)]
     pub played: Option<ActuatorPlay>,
-    /// How much of the texture is lost; `None` if the file holds the whole texture.
+    /// How much of the texture is lost; `None` if the file stores the whole texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<Loss>,
-    /// What the format loses of every texture.
+    /// Description of what the format loses of every texture.
     pub loses: &'static str,
     /// Other remarks, each as a sentence.
     pub notes: Vec<String>,
 }
 
 impl ExportedFile {
-    /// A file that holds the asset itself, which loses nothing.
+    /// Makes the result for a file that stores the asset itself, so that nothing is lost.
     pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>) -> Self {
         Self {
             bytes,
@@ -141,21 +144,21 @@ impl ExportedFile {
     }
 }
 
-/// How an actuator plays a file, according to its profile.
+/// How well an actuator can play a file, according to the actuator's profile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct ActuatorPlay {
     pub profile: String,
     pub seconds: f64,
-    /// Fraction of the time in which the actuator is too weak.
+    /// Fraction of the time during which the actuator is too weak, 0 to 1.
     pub limited: f64,
 }
 
-/// Writes an asset as a file of another format. A file of what the asset plays is then read back,
-/// and the loss is measured.
+/// Writes an asset as a file of another format. If the file stores what the asset plays, instead of
+/// the asset itself, it is read back and the loss is measured.
 ///
 /// # Errors
-/// When the format cannot be written or does not take a setting, a number is out of range, the
+/// When the format cannot be written or does not accept a setting, a number is out of range, the
 /// actuator cannot play such files, or the asset cannot be played.
 pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
@@ -182,11 +185,11 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, Exch
     }
 }
 
-/// Writes what a scene plays as a file of another format. Model, motion and seed come from the
-/// scene.
+/// Writes what a scene plays as a file of another format. The scene determines models, motion and
+/// seed.
 ///
 /// # Errors
-/// As [`export`]. Also when the format holds assets, not what is played.
+/// As for [`export`]. Also when the format stores assets instead of what is played.
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,
@@ -251,7 +254,7 @@ fn of_signal(
     })
 }
 
-/// Describes how far a level in decibels is below 0.
+/// Returns a text that describes how far a level in decibels is below 0.
 fn below(db: f64) -> String {
     if db.is_finite() { format!("it is {:.1} dB", -db) } else { "all of it is".to_owned() }
 }

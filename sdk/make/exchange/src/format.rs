@@ -1,5 +1,5 @@
-//! Description of a format: how its files are imported and exported, and which settings each
-//! direction takes.
+//! Describes a format: how its files are imported and exported, and which settings an import and an
+//! export accept.
 
 use serde::Serialize;
 
@@ -12,44 +12,44 @@ use crate::job::{Job, WrittenSignal};
 use crate::profile::Profile;
 use crate::rights::RightsPlace;
 
-/// Sample rate of signals, of measured envelopes and of losses, hertz.
+/// Sample rate of imported signals, hertz. Envelopes and losses are measured at the same rate.
 pub const RATE_HZ: f64 = 8_000.0;
 
 /// A file format that can be imported, exported or both.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// The name, as given to `--to`.
+    /// The name of the format, as for the flag `--to`.
     pub name: &'static str,
-    /// A short description.
+    /// A short description of the format.
     pub title: &'static str,
     /// File extensions, in lower case.
     pub extensions: &'static [&'static str],
-    /// How files are imported; `None` if they cannot be.
+    /// How files are imported; `None` if the format cannot be imported.
     pub reads: Option<Reads>,
-    /// How assets are exported; `None` if they cannot be.
+    /// How assets are exported; `None` if the format cannot be exported.
     #[cfg(feature = "export")]
     pub writes: Option<Writes>,
-    /// Where its files carry the licence and the author.
+    /// Where the format's files store the licence and the author.
     pub rights: RightsPlace,
-    /// What the format keeps of a texture.
+    /// Which parts of a texture the format keeps, in words.
     pub keeps: &'static str,
-    /// What the format loses.
+    /// Which parts of a texture the format loses, in words.
     pub loses: &'static str,
 }
 
 /// How files of a format are imported.
 #[derive(Debug, Clone, Copy)]
 pub enum Reads {
-    /// As a signal within ±1, to which models are fitted. Its frequencies are positions in an
-    /// actuator's range; `profile` names the actuator unless the user gives another.
+    /// As a signal between -1 and 1, to which models are fitted. The file gives frequencies as
+    /// positions in an actuator's range. `profile` names the actuator; the user may choose another.
     Positions { read: ReadPositions, profile: &'static str },
-    /// As a signal within ±1, to which models are fitted. Its frequencies are in hertz, or in waves
-    /// per metre.
+    /// As a signal between -1 and 1, to which models are fitted. The file gives frequencies in
+    /// hertz, or in waves per metre.
     Signal(ReadSignal),
-    /// As an asset, because the file states units, speeds and forces.
+    /// As an asset, without a fit, because the file states units, speeds and forces.
     Asset(ReadAsset),
-    /// As an asset, because the file is an image of grey values over a surface.
+    /// As an asset, without a fit, because the file is an image of grey values over a surface.
     Map,
 }
 
@@ -61,17 +61,17 @@ type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 #[cfg(feature = "export")]
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
-    /// What the asset plays at a motion, as far as an actuator can play it.
+    /// The file stores what the asset plays at a motion, as far as an actuator can play it.
     Signal {
         write: WriteSignal,
-        /// The profile that is used unless the user gives another.
+        /// The profile that is used unless the user chooses another.
         profile: &'static str,
-        /// Settings in addition to the settings of all signals.
+        /// Settings that this format accepts in addition to the settings of all signals.
         settings: &'static [&'static str],
     },
-    /// The asset itself, without loss.
+    /// The file stores the asset itself, without loss.
     Asset(WriteAsset),
-    /// An image of grey values over a surface.
+    /// The file is an image of grey values over a surface.
     Map,
 }
 
@@ -80,24 +80,24 @@ pub(crate) type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeErro
 #[cfg(feature = "export")]
 type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 
-/// How a signal is to be sampled.
+/// How a file is sampled when it is read as a signal.
 #[derive(Debug, Clone, Copy)]
 pub struct Sampling {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Speed of a finger over a file whose positions lie in space, mm/s.
+    /// Speed of the finger, mm/s, for files whose positions lie in space.
     pub speed_mm_s: f64,
 }
 
-/// A signal within ±1.
+/// A signal whose samples lie between -1 and 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
     pub samples: Vec<f64>,
-    /// What was ignored in the file, each as a sentence.
+    /// What the reader ignored in the file, as a list of sentences.
     pub left_out: Vec<String>,
 }
 
-/// What an asset needs in addition to its file.
+/// What an asset needs in addition to the contents of the imported file.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Naming<'a> {
     /// Name of the texture, if the file does not name it.
@@ -106,7 +106,7 @@ pub struct Naming<'a> {
     pub tool: &'a str,
 }
 
-/// Settings of imports to which models are fitted.
+/// Settings of imports that fit models to a signal.
 const FITTED: &[&str] =
     &["full_scale", "quantity", "speed", "force", "model", "option", "level", "keep_reference"];
 /// Settings of image imports.
@@ -114,16 +114,16 @@ const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 /// Settings of image exports.
 #[cfg(feature = "export")]
 const PRINTED: &[&str] = &["model", "speed", "force"];
-/// Settings of exports of what an asset plays.
+/// Settings of exports that store what an asset plays.
 #[cfg(feature = "export")]
 const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profile", "seed"];
 
-/// Settings among these that come from the scene when a scene is exported.
+/// Those of these settings that a scene determines when a scene is exported.
 #[cfg(feature = "export")]
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
-    /// Returns the settings that the import takes, as keywords, without metadata.
+    /// Returns the keywords of the settings that the import accepts, except metadata.
     #[must_use]
     pub fn settings(&self) -> Vec<&'static str> {
         match self {
@@ -144,7 +144,7 @@ impl Reads {
 
 #[cfg(feature = "export")]
 impl Writes {
-    /// Returns the settings that the export takes, as keywords.
+    /// Returns the keywords of the settings that the export accepts.
     #[must_use]
     pub fn settings(&self) -> Vec<&'static str> {
         match self {
@@ -164,7 +164,7 @@ impl Writes {
 }
 
 impl Format {
-    /// Checks that an import takes the given settings, which are keywords such as `full_scale`.
+    /// Checks that an import accepts the given settings, which are keywords such as `full_scale`.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
@@ -183,7 +183,7 @@ impl Format {
         self.check("import", takes.unwrap_or_default(), given)
     }
 
-    /// Checks that an export takes the given settings, as [`Self::check_import`] does for an
+    /// Checks that an export accepts the given settings, as [`Self::check_import`] does for an
     /// import.
     ///
     /// # Errors
@@ -197,8 +197,8 @@ impl Format {
         self.check("export", takes.unwrap_or_default(), given)
     }
 
-    /// As [`Self::check_export`], for an export of what a scene plays. Model, motion and seed come
-    /// from the scene.
+    /// Does the same as [`Self::check_export`], for an export of what a scene plays. The scene
+    /// determines models, motion and seed, so their settings do not apply.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
@@ -212,7 +212,7 @@ impl Format {
         self.check("export of a scene", takes, given)
     }
 
-    /// Reads the signal of a file, whose name is `file`.
+    /// Reads a file as a signal. `file` is its name.
     pub(crate) fn signal(
         &self,
         file: &str,
@@ -234,7 +234,7 @@ impl Format {
         read.map_err(in_file(file))
     }
 
-    /// An error that says why the format cannot hold a texture.
+    /// Makes an error that states why the format cannot store a texture.
     pub(crate) fn cannot(&self, problem: impl Into<String>) -> ExchangeError {
         ExchangeError::Cannot { format: self.name, problem: problem.into() }
     }
@@ -256,7 +256,7 @@ impl Format {
         }
     }
 
-    /// Its extensions, each with its leading dot.
+    /// Returns the format's extensions as a text, each with a leading dot.
     #[must_use]
     pub fn dotted(&self) -> String {
         let dotted: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
@@ -264,18 +264,18 @@ impl Format {
     }
 }
 
-/// What `htex formats --json` prints about a format.
+/// The JSON that `htex formats --json` prints for a format.
 #[derive(Serialize)]
 struct FormatDescription<'a> {
     name: &'a str,
     title: &'a str,
     extensions: &'a [&'a str],
-    /// `signal` or `asset`; for exports also `image`.
+    /// How the format is imported: `signal` or `asset`. For exports, also `image`.
     import: Option<&'a str>,
     import_settings: Vec<&'a str>,
     export: Option<&'a str>,
     export_settings: Vec<&'a str>,
-    /// Where its files carry the licence and the author.
+    /// Where the format's files store the licence and the author.
     rights: &'a str,
     keeps: &'a str,
     loses: &'a str,

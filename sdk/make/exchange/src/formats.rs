@@ -1,4 +1,4 @@
-//! The table of all formats. Commands, help, messages and documents are generated from it.
+//! The table of all formats. The commands, their help, messages and documents use this table.
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads};
@@ -116,7 +116,8 @@ impl Format {
     /// Finds the format that imports a file, by the file's extension.
     ///
     /// # Errors
-    /// When no imported format has the extension; the error lists the formats that can be imported.
+    /// When no format that can be imported has the extension. The error lists the formats that can
+    /// be imported.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
         let extension =
             file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
@@ -129,13 +130,14 @@ impl Format {
     }
 }
 
-/// Lists the extensions that can be imported: `.haptic, .ahap and .hjif`.
+/// Returns a list of the extensions that can be imported, as a text such as `.haptic, .ahap and
+/// .hjif`.
 #[must_use]
 pub fn imported() -> String {
     extensions_of(|reads| reads.is_some())
 }
 
-/// Lists the extensions that are imported as signals.
+/// Returns a list of the extensions that are imported as signals, as a text.
 #[must_use]
 pub fn imported_signals() -> String {
     extensions_of(|reads| matches!(reads, Some(Reads::Positions { .. } | Reads::Signal(_))))

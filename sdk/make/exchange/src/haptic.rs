@@ -1,11 +1,13 @@
-//! Reader and writer of Meta's `.haptic` files, version 1: an amplitude and a frequency envelope
-//! with numbers from 0 to 1, and emphasis at points of the amplitude.
+//! Reads and writes Meta's `.haptic` files, version 1. A file has an amplitude envelope and a
+//! frequency envelope, with numbers from 0 to 1. Points of the amplitude envelope may have an
+//! emphasis.
 //!
-//! Written from the published description (*.haptic File Specification 1.0*,
-//! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As it demands, a frequency point
-//! after the end of the amplitude is refused. The only exception is a last point whose line crosses
-//! the end, because earlier editors wrote such points. Frequencies are positions in an actuator's
-//! range, so a profile is needed to convert them to hertz; without frequency points they are 0.5.
+//! The code follows the published specification (*.haptic File Specification 1.0*,
+//! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As the specification requires, a
+//! frequency point after the end of the amplitude envelope is an error. The only exception is a
+//! last point whose line crosses this end, because earlier editors wrote such points. Frequencies
+//! are positions in an actuator's range, so a profile is needed to convert them to hertz. Without
+//! frequency points, the frequency is 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -17,7 +19,7 @@ use crate::json::{self, within};
 use crate::pattern::{MOST_S, Pattern, Transient, rendered_of_file};
 use crate::profile::Profile;
 
-/// The frequency if a file states none (section Frequency Envelope).
+/// The frequency of a file without frequency points (section Frequency Envelope).
 const USUAL_FREQUENCY: f64 = 0.5;
 
 /// A `.haptic` file.
@@ -52,7 +54,7 @@ pub struct Metadata {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Signals {
     pub continuous: Continuous,
-    /// From a draft of the format; ignored.
+    /// A key from a draft of the format. It is ignored.
     #[serde(default, skip_serializing)]
     impulses: Option<Value>,
 }
@@ -65,7 +67,7 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    /// Missing, null and empty mean the same.
+    /// The frequency envelope. A missing, null or empty envelope means the same.
     #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
 }
@@ -86,7 +88,7 @@ pub struct Amplitude {
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Emphasis {
-    /// Amplitude, from the envelope's amplitude up to 1.
+    /// Amplitude, at least the envelope's amplitude and at most 1.
     pub amplitude: f64,
     /// Frequency from 0 to 1.
     pub frequency: f64,
@@ -107,8 +109,8 @@ impl Haptic {
     /// Reads a `.haptic` file.
     ///
     /// # Errors
-    /// When it is not JSON, has another version or structure, or breaks a rule of the format. The
-    /// fault names the place.
+    /// When the file is not JSON, has another version or structure, or breaks a rule of the format.
+    /// The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let haptic: Self = json::read(bytes)?;
         haptic.check()?;
@@ -129,7 +131,7 @@ impl Haptic {
         self.check_frequency(start_s, end_s)
     }
 
-    /// Checks the amplitude envelope and returns its start and end.
+    /// Checks the amplitude envelope. Returns its start and end.
     fn check_amplitude(&self) -> Result<(f64, f64), Fault> {
         let points = &self.signals.continuous.envelopes.amplitude;
         let mut before = 0.0;
@@ -169,7 +171,7 @@ impl Haptic {
         Ok(())
     }
 
-    /// What the reader ignores in this file, each as a sentence.
+    /// Returns what the reader ignores in this file, as a list of sentences.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let impulses = self.signals.impulses.iter();
@@ -178,8 +180,8 @@ impl Haptic {
             .collect()
     }
 
-    /// Returns the vibration for an actuator. The file's frequencies are positions in this
-    /// actuator's range.
+    /// Returns the file's vibration for an actuator. The file gives frequencies as positions in
+    /// this actuator's range.
     #[must_use]
     pub fn pattern(&self, profile: &Profile) -> Pattern {
         let envelopes = &self.signals.continuous.envelopes;
@@ -212,8 +214,8 @@ impl Haptic {
     }
 
     /// Makes a file from a vibration whose levels are amplitudes. A transient becomes the emphasis
-    /// of a point, which is added if there is none at that time. A transient before the start or
-    /// after the end is moved there.
+    /// of an amplitude point. If there is no point at its time, one is added. A transient before
+    /// the start or after the end is moved to the start or the end.
     #[must_use]
     pub fn from_pattern(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();
@@ -275,7 +277,8 @@ fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profi
         _ => return,
     };
     let time = transient.time_s.clamp(first, last);
-    // Of several points at one time the last one counts: it is the value after the jump.
+    // If several points have this time, the last one counts, because it is the value after the
+    // jump.
     let at = match points.iter().rposition(|point| point.time == time) {
         Some(at) => at,
         None => {

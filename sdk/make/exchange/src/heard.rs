@@ -1,5 +1,5 @@
-//! What is played before it is exported: an asset at a condition or along a stroke, or a scene, as
-//! samples and as an envelope block by block.
+//! Plays what is exported: an asset at a condition or along a stroke, or a scene. The result is
+//! samples, and an envelope with a value for each block.
 
 use htex_author::threshold_magnitude;
 use htex_dsp::envelope::Analyser;
@@ -13,29 +13,30 @@ use crate::stroke::Stroke;
 
 /// Number of bands in the envelope.
 pub(crate) const BANDS: usize = 14;
-/// Time that is played before the first sample, so that analysis windows are full, seconds.
+/// Time that is played before the first exported sample, so that the analysis windows are full,
+/// seconds.
 const BEFORE_S: f64 = 0.2;
 
-/// How the finger moves.
+/// How the finger moves during an export.
 #[derive(Debug, Clone)]
 pub enum Path {
-    /// At one speed and force; `None` stands for the asset's default condition.
+    /// At one constant speed and force. `None` stands for the asset's default condition.
     Condition(Option<Motion>),
     Stroke(Stroke),
 }
 
-/// What a scene plays, in the unit of its textures.
+/// The sound of a scene, in the unit of its textures.
 pub struct SceneSound<'a> {
-    /// The scene's name, which the file gets.
+    /// The scene's name, which the exported file gets.
     pub name: &'a str,
-    /// The rights of all its textures together.
+    /// Licence and author for all textures of the scene together.
     pub rights: &'a Rights,
     pub quantity: Quantity,
-    /// The band of its textures.
+    /// The frequency band of its textures.
     pub band: Band,
-    /// Length, seconds.
+    /// Length of the scene, seconds.
     pub seconds: f64,
-    /// Returns samples at a rate in hertz, as many as the scene's length contains.
+    /// Returns the samples of the whole scene at a sample rate in hertz.
     pub samples: &'a dyn Fn(f64) -> Result<Vec<f32>, String>,
 }
 
@@ -46,13 +47,13 @@ pub(crate) enum Source<'a> {
     Scene(&'a SceneSound<'a>),
 }
 
-/// What is played, and for how long.
+/// A source, and for how long it is played.
 pub(crate) struct Playing<'a> {
     pub(crate) source: Source<'a>,
     pub(crate) seconds: f64,
 }
 
-/// The result of playing: samples and envelope.
+/// The result of playing: samples and their envelope.
 pub(crate) struct Heard {
     pub(crate) quantity: Quantity,
     pub(crate) rate_hz: f64,
@@ -62,14 +63,14 @@ pub(crate) struct Heard {
     pub(crate) block_s: f64,
 }
 
-/// A block of the envelope, some milliseconds long, in the asset's unit.
+/// A block of the envelope, some milliseconds long. Its values are in the asset's unit.
 pub(crate) struct Block {
-    /// Mean square in each band; their sum is the mean square of the block's samples.
+    /// Mean square in each band. The sum is the mean square of the block's samples.
     pub(crate) powers: Vec<f64>,
 }
 
 impl Block {
-    /// The block with the powers of only these bands.
+    /// Returns the block with the powers of only these bands.
     pub(crate) fn only(&self, bands: &[usize]) -> Self {
         let mut powers = vec![0.0; self.powers.len()];
         for ((k, own), power) in powers.iter_mut().enumerate().zip(&self.powers) {
@@ -87,7 +88,7 @@ impl Source<'_> {
         }
     }
 
-    /// The rights of what is played, which are written into every file.
+    /// Returns the licence and author of what is played. They are written into every file.
     pub(crate) fn rights(&self) -> Rights {
         match self {
             Self::Asset { asset, .. } => Rights::from_manifest(asset.manifest()),
@@ -109,7 +110,7 @@ impl Source<'_> {
         }
     }
 
-    /// The manifest, if a single asset is played.
+    /// Returns the manifest, if a single asset is played.
     pub(crate) fn manifest(&self) -> Option<&Manifest> {
         match self {
             Self::Asset { asset, .. } => Some(asset.manifest()),
@@ -117,7 +118,7 @@ impl Source<'_> {
         }
     }
 
-    /// The stroke, if the finger follows one.
+    /// Returns the stroke, if the finger follows one.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         match self {
             Self::Asset { path: Path::Stroke(stroke), .. } => Some(stroke),
@@ -125,7 +126,7 @@ impl Source<'_> {
         }
     }
 
-    /// The speed, if it is constant and known.
+    /// Returns the speed of the finger, if it is constant and known.
     pub(crate) fn speed_mm_s(&self) -> Option<f64> {
         match self {
             Self::Asset { path: Path::Condition(Some(motion)), .. } => Some(motion.speed_mm_s),
@@ -139,7 +140,8 @@ impl Source<'_> {
 }
 
 impl Playing<'_> {
-    /// Plays at a sample rate, and measures an envelope with blocks of about `block_s`.
+    /// Plays the source at a sample rate, and measures an envelope with blocks of about `block_s`
+    /// seconds.
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {
         let (quantity, band) = (self.source.quantity(), self.source.band());
         let mut analyser = Analyser::new(BANDS, band, rate_hz);
@@ -148,7 +150,7 @@ impl Playing<'_> {
         let frames = (libm::round(block_s * rate_hz).max(1.0) as usize).min(len);
         let (before, samples) = self.samples(rate_hz, len, frames)?;
         analyser.push(&before);
-        // What was pushed so far belongs to no block, and reading it empties the level.
+        // The samples so far belong to no block. Reading the analyser discards their level.
         analyser.read(&mut []);
         let blocks = samples.chunks(frames).map(|block| {
             analyser.push(block);
@@ -210,11 +212,12 @@ impl Path {
 }
 
 impl Block {
-    /// What an analyser measured since it was last asked.
+    /// Returns what an analyser measured since the last call, as a block.
     fn measured(analyser: &mut Analyser) -> Self {
         let mut powers = vec![0.0; BANDS];
         let level_rms = analyser.read(&mut powers).level_rms;
-        // The level comes from the samples, but the bands come from windows that lag behind them.
+        // The level is measured on the samples themselves, but the bands come from windows that lag
+        // behind.
         let sum: f64 = powers.iter().sum();
         let scale = if sum > 0.0 { level_rms * level_rms / sum } else { 0.0 };
         powers.iter_mut().for_each(|power| *power *= scale);
@@ -239,15 +242,15 @@ impl Heard {
     }
 }
 
-/// Acceleration in m/s² that feels like a sample of 1 of a quantity at a frequency: both displace
-/// the skin equally.
+/// Returns the acceleration, m/s², that feels like a value of 1 of a quantity at a frequency: both
+/// displace the skin by the same amount.
 pub(crate) fn acceleration_of(quantity: Quantity, hertz: f64) -> f64 {
     let listener = Listener::default();
     threshold_magnitude(hertz, Quantity::Acceleration, &listener)
         / threshold_magnitude(hertz, quantity, &listener)
 }
 
-/// Smallest amplitude of a quantity that can be felt at a frequency.
+/// Returns the smallest amplitude of a quantity that can be felt at a frequency.
 pub(crate) fn threshold(quantity: Quantity, hertz: f64) -> f64 {
     threshold_magnitude(hertz, quantity, &Listener::default())
 }

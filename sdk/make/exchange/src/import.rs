@@ -1,9 +1,11 @@
-//! Import of files of other formats as assets.
+//! Imports files of other formats as assets.
 //!
-//! A file that states units, speeds and forces is read as an asset (HaTT), or contains one (glTF).
-//! All other files hold signals within ±1 and state no newtons, no speed and no force. Such a
-//! signal becomes a recording, with the full scale and the condition that the user gives, and
-//! models are fitted to it. Since a texture lasts, a signal shorter than a few seconds is repeated.
+//! A file that states units, speeds and forces becomes an asset directly (HaTT). A glTF file
+//! contains an asset. An image becomes an asset at the full scale and the condition that the user
+//! gives. All other files contain a signal between -1 and 1, and state no newtons, no speed and no
+//! force. Such a signal becomes a recording with the full scale and the condition that the user
+//! gives, and models are fitted to it. A texture plays for any length of time, so a signal that is
+//! shorter than a few seconds is repeated first.
 
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
@@ -22,40 +24,42 @@ use crate::physical::{PITCH, Physical};
 use crate::profile::Profile;
 use crate::rights::FileRights;
 
-/// A signal is repeated until it is this long, seconds.
+/// A shorter signal is repeated until it has this length, seconds.
 const LEAST_S: f64 = 4.0;
 
-/// What is said about an asset without a licence.
+/// The note about an asset without a licence.
 const UNLICENSED: &str = "It states no licence, and without one nobody may pass it on; give the licence of the imported file.";
 
-/// How a file is imported.
+/// Settings of an import.
 #[derive(Debug, Clone, Default)]
 pub struct Import<'a> {
     /// The asset's name, if the file does not name it.
     pub name: &'a str,
     pub physical: Physical,
-    /// The actuator in whose range a file's frequencies are positions; by default the format's own.
+    /// The actuator, if the file gives frequencies as positions in an actuator's range. By default
+    /// the format's default actuator.
     pub profile: Option<&'a Profile>,
     pub fit: FitSettings,
     pub metadata: Metadata,
-    /// The text of the file `NAME.license` beside the imported file, if there is one
+    /// The text of the file `NAME.license` next to the imported file, if there is one
     /// ([`htex_format::license_file`]).
     pub license_file: Option<&'a str>,
     /// Program and version, stored in the provenance.
     pub tool: &'a str,
 }
 
-/// An imported asset, with results that its file does not store.
+/// An imported asset, with results of the import that its file does not store.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ImportedAsset {
     pub asset: htex_format::Asset,
-    /// The asset's own file, if the imported file contains it and metadata changed nothing.
+    /// The bytes of the asset's file, if the imported file contains the asset and the given
+    /// metadata changes nothing.
     file: Option<Vec<u8>>,
-    /// How much of the difference from the signal can be felt, for each representation at each
-    /// condition. Empty if nothing was fitted.
+    /// For each representation at each condition: how much of the difference from the signal a
+    /// finger can feel. Empty if no model was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// Ids of models that could not be fitted, each with the reason. Empty if nothing was fitted.
+    /// Ids of models that could not be fitted, each with the reason. Empty if no model was fitted.
     pub skipped: Vec<(String, String)>,
     /// What the user should know.
     pub warnings: Vec<Notice>,
@@ -63,12 +67,12 @@ pub struct ImportedAsset {
     pub notes: Vec<Notice>,
 }
 
-/// Imports a file as an asset. `file` is its name; the extension decides the format.
+/// Imports a file as an asset. `file` is its name, whose extension determines the format.
 ///
 /// # Errors
-/// When no format has the extension or the format does not take a given setting, something that the
-/// file does not state is not given either, the file is invalid (with the place), or no model can
-/// be fitted.
+/// When no format has the extension, the format does not accept a given setting, a setting is
+/// missing that the file does not state either, the file is invalid (the error names the place), or
+/// no model can be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -105,7 +109,8 @@ pub fn import(
     let own = Rights::from_manifest(&imported.asset.manifest);
     stated.check(&own, &given)?;
     let mut metadata = how.metadata.clone();
-    // What the asset states stays as it is, and so do the bytes of an asset inside the file.
+    // Statements of the asset itself are kept. The bytes of an asset inside the file also stay the
+    // same.
     let missing = |own: &Option<String>, stated| if own.is_none() { stated } else { None };
     metadata.license = metadata.license.or(missing(&own.license, stated.rights.license));
     metadata.author = metadata.author.or(missing(&own.author, stated.rights.author));
@@ -123,10 +128,10 @@ impl Import<'_> {
         Naming { name: self.name, tool: self.tool }
     }
 
-    /// The settings that are set, as keywords.
+    /// Returns the keywords of the settings that were set.
     fn given(&self) -> Vec<&'static str> {
         let (physical, fit) = (&self.physical, &self.fit);
-        // `all` is the command line's own default and does not count as given.
+        // `all` is the default of the command line, and does not count as given.
         let is_all = |models: &Vec<String>| models[..] == ["all"];
         let all = [
             ("full_scale", physical.full_scale.is_some()),
@@ -147,8 +152,8 @@ impl Import<'_> {
 }
 
 impl ImportedAsset {
-    /// An asset to which nothing was fitted; `file` is its own file, if the imported file contains
-    /// it.
+    /// Makes the result for an asset to which no model was fitted. `file` has the bytes of the
+    /// asset, if the imported file contains them.
     pub(crate) fn new(
         asset: htex_format::Asset,
         file: Option<Vec<u8>>,
@@ -168,14 +173,14 @@ impl ImportedAsset {
         let before = self.asset.manifest.clone();
         metadata.apply(&mut self.asset.manifest);
         if self.asset.manifest != before {
-            // The bytes in the file no longer match the manifest; without a change they stay as
-            // they are.
+            // The bytes of the file no longer match the manifest. If nothing changed, they are
+            // kept.
             self.file = None;
         }
     }
 
-    /// Returns the asset's file. If the imported file contains one, it is returned bit for bit;
-    /// otherwise it is written anew.
+    /// Returns the bytes of the asset's file. If the imported file contains the asset, its bytes
+    /// are returned unchanged. Otherwise the file is written anew.
     ///
     /// # Errors
     /// When the asset breaks a rule of its format.
@@ -203,10 +208,10 @@ fn mapped(
     map::import(&image, pitch_mm, values, physical.quantity, how.naming()).map_err(in_file(file))
 }
 
-/// Reads a file as a recording, as [`import`] does before it fits models.
+/// Reads a file as a recording. [`import`] does this before it fits models.
 ///
 /// # Errors
-/// As [`import`]. Also when the file is an asset instead of a signal.
+/// As for [`import`]. Also when the file is an asset instead of a signal.
 pub fn recording_of(
     file: &str,
     bytes: &[u8],
@@ -218,7 +223,7 @@ pub fn recording_of(
     let signal = format.signal(file, bytes, values.speed_mm_s, profile)?;
     let mut samples: Vec<f64> = signal.samples.iter().map(|x| values.full_scale * x).collect();
     let mut warnings = signal.left_out;
-    // Before samples are repeated, so that an empty signal is also refused here.
+    // Checked before samples are repeated, so that an empty signal is also refused.
     if !samples.iter().any(|x| *x != 0.0) {
         let silent = Fault::whole("it is silent, and nothing can be fitted to it");
         return Err(in_file(file)(silent));
@@ -237,9 +242,10 @@ pub fn recording_of(
     Ok(recording)
 }
 
-/// Fits an asset to signals ([`recording_of`]). Their spectra are read in evenly spaced windows,
-/// and the full scale is stored in the provenance. The conditions have no repeatability: a file
-/// that is rendered and repeated says nothing about how much another touch would differ.
+/// Fits models to signals that [`recording_of`] returned, and makes an asset. Spectra are computed
+/// from evenly spaced time windows. The full scale is stored in the provenance. The conditions have
+/// no repeatability: a rendered and repeated file does not show how much another touch would
+/// differ.
 ///
 /// # Errors
 /// As [`fit_asset`].
@@ -256,13 +262,14 @@ pub fn fit_signals(
     }
     let mut fitted = fit_asset(takes, &request)?;
     for condition in &mut fitted.asset.manifest.conditions {
-        // Repeated samples agree with themselves, which would look like a perfect recording.
+        // Repeated samples agree with themselves, so a repeatability would look like a perfect
+        // recording.
         condition.repeatability_rms_db = None;
     }
     Ok(fitted)
 }
 
-/// Fits an asset to a recording.
+/// Fits models to a recording, and makes an asset.
 fn fitted(
     recording: Recording,
     how: &Import<'_>,

@@ -1,4 +1,4 @@
-//! What a format's writer is given, and what it returns.
+//! The input and the result of a format's writer.
 
 use crate::error::{ExchangeError, Fault};
 use crate::export::Export;
@@ -16,26 +16,26 @@ pub enum Coding {
     Wavelet,
 }
 
-/// The input of a writer for what is played.
+/// The input of a writer: what is played, and the actuator for which it is written.
 pub struct Job<'a> {
     pub(crate) export: &'a Export<'a>,
     pub(crate) playing: Playing<'a>,
     pub(crate) profile: &'a Profile,
 }
 
-/// What a writer returns.
+/// The result of a writer.
 pub struct WrittenSignal {
     pub(crate) bytes: Vec<u8>,
     pub(crate) heard: Heard,
-    /// What the file drives the actuator with when it is read back, at the sample rate of what was
-    /// heard.
+    /// The signal with which the file drives the actuator. It comes from reading the file back. It
+    /// has the sample rate of `heard`.
     pub(crate) drive: Vec<f64>,
     pub(crate) limited: f64,
     pub(crate) notes: Vec<String>,
 }
 
 impl Job<'_> {
-    /// Remarks about the profile and the stroke.
+    /// Returns remarks about the profile and the stroke.
     pub(crate) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let mut values = self.profile.values().into_iter();
@@ -49,16 +49,16 @@ impl Job<'_> {
         notes
     }
 
-    /// Seconds between points of an envelope: the shortest that the actuator and the format accept,
-    /// or longer if there would be too many points.
+    /// Returns the time between points of an envelope, seconds. It is the shortest time that the
+    /// actuator accepts, or longer if there would be too many points.
     pub(crate) fn point_s(&self, most_points: usize) -> f64 {
         let most = (self.profile.most_points.value as usize).min(most_points).max(4);
-        // There are two more points than blocks.
+        // An envelope has two more points than blocks.
         let longest = self.playing.seconds / (most - 2) as f64;
         longest.max(self.profile.shortest_point_ms.value / 1e3)
     }
 
-    /// Refuses an actuator that cannot play samples.
+    /// Returns an error if the actuator cannot play samples.
     pub(crate) fn check_samples(&self) -> Result<(), ExchangeError> {
         if self.profile.kind == Kind::Resonant {
             return Ok(());
@@ -70,7 +70,7 @@ impl Job<'_> {
         })
     }
 
-    /// An error in a file just written, which its own reader refuses.
+    /// Makes the error for a file that was just written and that the format's own reader refuses.
     pub(crate) fn own(&self, fault: Fault) -> ExchangeError {
         self.cannot(fault.to_string())
     }

@@ -1,5 +1,5 @@
-//! Reading JSON with error places: a problem is located by its JSON pointer, or by line and column
-//! if the text is not JSON.
+//! Reads JSON. An error states its place: a JSON pointer, or line and column if the text is not
+//! JSON.
 
 use htex_base::finding::escape;
 use htex_format::{JsonError, parse_json};
@@ -13,7 +13,7 @@ use crate::error::Fault;
 /// Largest file that is imported, bytes.
 pub const MOST_BYTES: u64 = 16 << 20;
 
-/// Reads a value from a JSON text of at most [`MOST_BYTES`].
+/// Reads a value from a JSON text, which may have at most [`MOST_BYTES`] bytes.
 pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Fault> {
     if bytes.len() as u64 > MOST_BYTES {
         let problem = format!("it has {} bytes, and at most {MOST_BYTES} are read", bytes.len());
@@ -21,7 +21,8 @@ pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Fault> {
     }
     // Some editors write a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    // First to a value: it finds keys that appear twice, and lets errors of types name their place.
+    // First parsed to a generic value. This finds keys that appear twice, and lets type errors name
+    // their place.
     let value = parse_json(bytes).map_err(of_json)?;
     typed(value)
 }
@@ -38,7 +39,7 @@ fn of_json(error: JsonError) -> Fault {
         JsonError::Syntax(error) => {
             let place = format!("line {} column {}", error.line(), error.column());
             let text = error.to_string();
-            // The parser's text ends with the place, which the fault already states.
+            // The parser's error text ends with the place, which the fault already states.
             let problem = text.split(" at line ").next().unwrap_or(&text);
             Fault::new(place, format!("it is not JSON: {problem}"))
         }
@@ -51,7 +52,7 @@ fn step(segment: &Segment) -> String {
     match segment {
         Segment::Seq { index } => format!("/{index}"),
         Segment::Map { key } => format!("/{}", escape(key)),
-        // A variant is already a key of its object. Unknown segments have no name.
+        // The name of a variant is already a key of its object. Unknown segments have no name.
         Segment::Enum { variant } => format!("/{}", escape(variant)),
         Segment::Unknown => String::new(),
     }
@@ -64,7 +65,7 @@ pub(crate) fn written(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
-/// Checks that a number is within a range; `what` names it in the message.
+/// Checks that a number is within a range. `what` names the number in the message.
 pub(crate) fn within(
     pointer: impl FnOnce() -> String,
     what: &str,

@@ -1,12 +1,12 @@
-//! Import and export: reads haptic files of other systems, and writes files that other devices can
-//! play.
+//! Imports haptic files of other systems as assets, and exports assets to files that other devices
+//! can play.
 //!
-//! [`FORMATS`] is the table of formats, from which commands, help and documents are made. **In.**
-//! [`import`] reads a file as an asset if the file states units, speeds and forces or contains an
-//! asset. Otherwise it reads a signal and fits models to it; the user gives what the file does not
-//! state. **Out.** [`export`] plays an asset at a condition or along a stroke, reduces it to what
-//! an actuator can do (its [`Profile`]) and writes it. It then reads the file back, plays it
-//! through the profile, and compares the result with the asset's own samples.
+//! [`FORMATS`] is the table of formats. Commands, help and documents use it. **Import.** If a file
+//! states units, speeds and forces, or contains an asset, [`import`] reads it as an asset.
+//! Otherwise it reads a signal and fits models to it, and the user gives what the file does not
+//! state. **Export.** [`export`] plays an asset at a condition or along a stroke, reduces the
+//! result to what an actuator can play (its [`Profile`]), and writes it. It then reads the file
+//! back, plays it through the profile, and compares the result with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
@@ -18,7 +18,8 @@
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
 //!
-//! Without the feature `export` (on by default) formats can only be read: they have no `writes`.
+//! Without the feature `export`, which is on by default, formats can only be imported, and
+//! [`Format`] has no field `writes`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! Loss of an export: the written file is read back, played through the profile, and compared with
-//! the asset's own samples.
+//! Measures the loss of an export: the written file is read back, played through the profile, and
+//! compared with the asset's own samples.
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
@@ -14,24 +14,24 @@ use crate::error::ExchangeError;
 use crate::heard::{Heard, acceleration_of};
 use crate::profile::{Kind, Profile};
 
-/// What an export loses.
+/// How much an export loses.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Loss {
-    /// Difference between what the actuator plays from the file, in the asset's unit as far as it
-    /// can be felt, and the asset's own samples.
+    /// Difference between what the actuator plays from the file and the asset's own samples. The
+    /// actuator's acceleration is converted to the asset's unit so that both would feel the same.
     #[serde(flatten)]
     pub difference: Difference,
-    /// Level of what the actuator plays relative to the asset's level, decibels.
+    /// Level of what the actuator plays, relative to the asset's level, decibels.
     pub level_db: f64,
-    /// Level of what the actuator plays relative to the detection threshold of a sensitive finger,
+    /// Level of what the actuator plays, relative to the detection threshold of a sensitive finger,
     /// decibels. At 0 or less, nobody feels it. `None` if no actuator plays the file.
     #[serde(skip)]
     pub(crate) sensation_db: Option<f64>,
 }
 
-/// Compares what an actuator plays when driven by `drive` with what was heard. `drive` must be at
-/// the sample rate of what was heard.
+/// Compares what an actuator plays when driven by `drive` with what the asset plays (`heard`).
+/// `drive` must have the sample rate of `heard`.
 pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
     let samples = vec![heard.samples.clone()];
     let recording = Recording::from_axes(heard.quantity, "the asset", heard.rate_hz, samples)
@@ -47,7 +47,7 @@ pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Lo
     let in_unit = |(hertz, drive): (&f64, &f64)| {
         let strongest = match profile.kind {
             Kind::Resonant => profile.strongest_at(*hertz),
-            // The drive already contains the square of the level.
+            // The drive is already the square of the level.
             Kind::Rotating => profile.strongest_m_s2.value,
         };
         drive * strongest / acceleration_of(heard.quantity, *hertz)

@@ -1,21 +1,21 @@
-//! What all envelope formats have in common: a level and a frequency over time, and transients.
+//! The common form of all envelope formats: a level and a frequency over time, and transients.
 
 use crate::curve::{Point, Reader};
 use crate::error::Fault;
 
-/// Longest pattern that is rendered, seconds.
+/// Longest pattern that can be rendered, seconds.
 pub const MOST_S: f64 = 600.0;
-/// Number of periods of the sine that stands for a transient. Renderers play one or two periods of
-/// a square wave (Meta, *.haptic File Specification 1.0*, Emphasis Object).
+/// A transient is rendered as this number of periods of a sine. Other renderers play one or two
+/// periods of a square wave (Meta, *.haptic File Specification 1.0*, Emphasis Object).
 const PERIODS: f64 = 2.0;
 
-/// Limit on the work for a file: the number of samples that its vibrations are added to, counted
-/// for each vibration, plus the points of their curves. At the sample rate of imports, a vibration
-/// of ten minutes takes 4.8 million.
+/// Limit on the work for a file. The work is the number of samples of each vibration, added up over
+/// all vibrations, plus the points of their curves. At the sample rate of imports, a vibration of
+/// ten minutes has 4.8 million samples.
 const MOST_WORK: f64 = 3.2e7;
 
-/// Refuses more than [`MOST_WORK`] samples and points at a sample rate. `at` is the vibrations'
-/// place in the file.
+/// Returns a fault if the work exceeds [`MOST_WORK`]. `at` is the place of the vibrations in the
+/// file.
 pub(crate) fn check_work(
     work: f64,
     rate_hz: f64,
@@ -36,11 +36,11 @@ pub struct Pattern {
     /// Start and end, seconds.
     pub from_s: f64,
     pub to_s: f64,
-    /// Level over time, 0 to 1. Raised to the power `exponent`, it is relative to the strongest
-    /// vibration at the frequency.
+    /// Level over time, 0 to 1. The level to the power of `exponent` is the amplitude relative to
+    /// the strongest vibration at the frequency.
     pub level: Vec<Point>,
-    /// 1 if levels are relative to the strongest vibration; 2 if levels are the square root of
-    /// that, as in `.ahap`.
+    /// 1 if levels are amplitudes relative to the strongest vibration. 2 if levels are the square
+    /// roots of these amplitudes, as in `.ahap`.
     pub exponent: i32,
     /// Frequency over time, hertz.
     pub frequency_hz: Vec<Point>,
@@ -50,7 +50,7 @@ pub struct Pattern {
 /// A short pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transient {
-    /// Its start, seconds.
+    /// Start of the transient, seconds.
     pub time_s: f64,
     /// Amplitude from 0 to 1, relative to the strongest vibration.
     pub amplitude: f64,
@@ -65,8 +65,8 @@ impl Pattern {
         ends.fold(self.to_s, f64::max)
     }
 
-    /// Adds the vibration to samples at a rate, from time 0 on. A value of 1 is the strongest that
-    /// the actuator plays.
+    /// Adds the vibration to samples. The first sample is at time 0. The value 1 is the strongest
+    /// vibration of the actuator.
     pub fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
         self.add_sine(samples, rate_hz);
         for transient in &self.transients {
@@ -74,8 +74,8 @@ impl Pattern {
         }
     }
 
-    /// Number of samples to which the vibration and its transients are added, plus the number of
-    /// points.
+    /// Returns the work of rendering: the number of samples of the vibration and its transients,
+    /// plus the number of points.
     fn work(&self, rate_hz: f64) -> f64 {
         let sine = (self.to_s - self.from_s).max(0.0) * rate_hz;
         let pulse = |t: &Transient| (t.end_s() - t.time_s) * rate_hz + 1.0;
@@ -97,12 +97,13 @@ impl Pattern {
             else {
                 break;
             };
-            // A default pattern has the exponent 0, which would play silence as the strongest
-            // vibration.
+            // The exponent is at least 1, because the 0 of a default pattern would turn silence
+            // into the strongest vibration.
             *sample += libm::pow(level, f64::from(self.exponent.max(1))) * libm::sin(phase);
-            // Adding up the phase keeps the sine continuous while its frequency changes.
+            // The phase is added up, so that the sine stays continuous while its frequency changes.
             phase += std::f64::consts::TAU * hertz / rate_hz;
-            // A phase that grew for ten minutes would lose digits, and with them its frequency.
+            // A phase that grew for ten minutes would lose digits, which would change the
+            // frequency.
             if phase > std::f64::consts::TAU {
                 phase -= std::f64::consts::TAU * libm::floor(phase / std::f64::consts::TAU);
             }
@@ -111,7 +112,7 @@ impl Pattern {
 }
 
 impl Transient {
-    /// Its end, seconds.
+    /// Returns the end of the transient, seconds.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.time_s + PERIODS / self.frequency_hz.max(1.0)
@@ -130,7 +131,8 @@ impl Transient {
     }
 }
 
-/// As [`rendered`], for a file from an untrusted source. `at` is the vibrations' place in the file.
+/// Does the same as [`rendered`], but limits the work, for a file from an untrusted source. `at` is
+/// the place of the vibrations in the file.
 pub(crate) fn rendered_of_file(
     patterns: &[Pattern],
     rate_hz: f64,
@@ -141,8 +143,8 @@ pub(crate) fn rendered_of_file(
     Ok(rendered(patterns, rate_hz))
 }
 
-/// Renders patterns together, from time 0 to the last end. The sum is limited to ±1, as an actuator
-/// limits it.
+/// Renders the sum of patterns, from time 0 to the end of the last one. The sum is limited to the
+/// range from -1 to 1, as in an actuator.
 #[must_use]
 pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
@@ -151,14 +153,14 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     for pattern in patterns {
         pattern.add_to(&mut samples, rate_hz);
     }
-    // Only the sum is limited: vibrations of opposite sign may be stronger on their own.
+    // Only the sum is limited, because single vibrations of opposite sign may be stronger than 1.
     samples.iter_mut().for_each(|x| *x = x.clamp(-1.0, 1.0));
     samples
 }
 
-/// Combines patterns into one, for formats with a single envelope: at each time the strongest
-/// pattern counts, and all transients are kept. The levels are converted to the exponent 1 at the
-/// points; between points the lines stay straight.
+/// Combines patterns into one, for formats with a single envelope. At each time, the strongest
+/// pattern is used. All transients are kept. Levels are converted to the exponent 1 at the points,
+/// and stay straight lines between points.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();
@@ -167,7 +169,7 @@ pub fn combined(patterns: &[Pattern]) -> Pattern {
     times.dedup();
     let mut all = Pattern { exponent: 1, ..Pattern::default() };
     for &time_s in &times {
-        // Before and after a jump.
+        // The values just before and at this time. They differ at a jump.
         let sides = [strongest(&sounding, time_s, true), strongest(&sounding, time_s, false)];
         for (level, hertz) in sides.into_iter().flatten() {
             push(&mut all.level, Point::new(time_s, level));
@@ -182,14 +184,15 @@ pub fn combined(patterns: &[Pattern]) -> Pattern {
 }
 
 fn push(curve: &mut Vec<Point>, point: Point) {
-    // Where there is no jump, both sides of a time are the same point.
+    // Without a jump, both values are the same point.
     if curve.last() != Some(&point) {
         curve.push(point);
     }
 }
 
-/// Level and frequency of the strongest pattern at a time, or just before it. Inside the whole
-/// range it is silence if no pattern sounds; outside it is `None`.
+/// Returns level and frequency of the strongest pattern at a time or, if `before` is true, just
+/// before it. If no pattern sounds, the level is 0. Outside the range of all patterns, returns
+/// `None`.
 fn strongest(patterns: &[&Pattern], time_s: f64, before: bool) -> Option<(f64, f64)> {
     let (first, last) =
         patterns.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.from_s), b.max(p.to_s)));
@@ -210,7 +213,8 @@ impl Pattern {
         [from_s, to_s].into_iter().chain(inner)
     }
 
-    /// The amplitude and frequency at a time, or just before it, if the pattern sounds there.
+    /// Returns the amplitude and frequency at a time or, if `before` is true, just before it.
+    /// Returns `None` if the pattern does not sound there.
     fn side(&self, time_s: f64, before: bool) -> Option<(f64, f64)> {
         let sounds = if before {
             self.from_s < time_s && time_s <= self.to_s

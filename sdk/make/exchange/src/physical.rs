@@ -1,4 +1,4 @@
-//! What files do not state: the physical value of 1, and how the finger moves.
+//! Values that files do not state: the physical value of 1, and the motion of the finger.
 
 use htex_author::Exploration;
 use htex_format::Quantity;
@@ -7,17 +7,18 @@ use crate::error::{ExchangeError, Missing, in_file};
 use crate::format::{Format, Naming, Reads};
 use crate::map;
 
-/// What a signal does not state.
+/// Values that a file with a signal or an image does not state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Physical {
-    /// The quantity at ±1, in its unit: newtons for a lateral force.
+    /// The value for which 1 stands in the file, in the unit of the quantity, such as newtons for a
+    /// lateral force. In an image, the value of white.
     pub full_scale: Option<f64>,
     pub quantity: Quantity,
     /// Speed of the finger, mm/s.
     pub speed_mm_s: Option<f64>,
     /// Normal force of the finger, newtons.
     pub force_n: Option<f64>,
-    /// Distance between an image's pixels, mm, if it is not the one stated in the file.
+    /// Distance between the pixels of an image, mm. It replaces the distance that the file states.
     pub pitch_mm: Option<f64>,
 }
 
@@ -29,11 +30,12 @@ pub(crate) const PITCH: Missing =
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
-/// Reads a file and returns what it does not state and an import must be given. The result is empty
-/// for a file that states an asset. `file` is its name.
+/// Reads a file, and returns which values it does not state, so that the user must give them for an
+/// import. The result is empty for a file that contains or fully describes an asset. `file` is its
+/// name.
 ///
 /// # Errors
-/// When no format has the file's extension, or the file is invalid; the error names the place.
+/// When no format has the file's extension, or the file is invalid. The error names the place.
 ///
 /// ```
 /// let file = br#"{"Version": 1, "Pattern": [{"Event": {"Time": 0, "EventType": "HapticTransient"}}]}"#;
@@ -56,8 +58,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
             }
         }
         _ => {
-            // A file over space becomes shorter the faster it is felt, so it is read at the highest
-            // speed.
+            // The faster the finger moves, the shorter a file over space becomes. So the file is
+            // read at the highest speed.
             format.signal(file, bytes, Exploration::MOST_SPEED_MM_S, None)?;
         }
     }
@@ -65,8 +67,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns what files of this format do not state, or need not state. For an image this includes
-    /// the distance between pixels, which only some files state.
+    /// Returns which values files of this format do not state, or may leave out. For an image, this
+    /// includes the distance between pixels, which only some files state.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {
@@ -78,16 +80,16 @@ impl Reads {
 }
 
 impl Physical {
-    /// Checks that everything needed is given and in range.
+    /// Checks that all values that the format needs are given and in range.
     ///
     /// # Errors
-    /// When something is missing or out of range. The error names everything that is missing, or
-    /// the first such number.
+    /// When a value is missing or out of range. The error names all missing values, or the first
+    /// value that is out of range.
     pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
         self.values(format).map(drop)
     }
 
-    /// Returns the values if everything needed is given and in range.
+    /// Returns the values, if all values that the format needs are given and in range.
     pub(crate) fn values(&self, format: &Format) -> Result<PhysicalValues, ExchangeError> {
         let all = [(FULL_SCALE, self.full_scale), (SPEED, self.speed_mm_s), (FORCE, self.force_n)];
         let (Some(full_scale), Some(speed), Some(force)) =
@@ -100,7 +102,7 @@ impl Physical {
             });
         };
         let above = |name, value: f64, most: f64, range| {
-            // Written so that NaN is refused.
+            // Written so that NaN is also refused.
             if value > 0.0 && value <= most {
                 Ok(())
             } else {
@@ -119,7 +121,7 @@ impl Physical {
     }
 }
 
-/// What a file does not state, checked to be in range.
+/// Values that a file does not state. They were checked and are in range.
 #[derive(Clone, Copy)]
 pub(crate) struct PhysicalValues {
     pub(crate) full_scale: f64,

@@ -1,10 +1,11 @@
-//! Profiles of actuators: what each can do, with a source for every value.
+//! Profiles of actuators. A profile states what an actuator can play, with a source for every
+//! value.
 //!
-//! The profiles are data in the crate (`profiles.toml`). A resonant actuator is a driven
-//! oscillator: at a frequency `f` it is at most as strong as `strongest_m_s2` times its response,
-//! `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`, and it plays nothing outside its range. A rotating mass is
-//! described by one number: its acceleration grows with the square of its frequency, which follows
-//! its level.
+//! The profiles are data in the crate (`profiles.toml`). A resonant actuator is modelled as a
+//! driven oscillator. At a frequency `f`, its strongest vibration is `strongest_m_s2` times its
+//! response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`. Outside its range it plays nothing. A motor with a
+//! rotating mass is controlled by its level alone: its frequency follows the level, and its
+//! acceleration grows with the square of the frequency.
 
 use std::sync::LazyLock;
 
@@ -18,57 +19,57 @@ pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
     struct Profiles {
         profile: Vec<Profile>,
     }
-    // A test makes sure that the file can be read. If it could not, there would be no profiles, and
-    // looking up any name would say so.
+    // A test makes sure that the file can be read. If it could not be read, there would be no
+    // profiles, and looking up any name would return an error.
     htex_base::files::toml::from_str(include_str!("profiles.toml"))
         .map_or_else(|_| Vec::new(), |all: Profiles| all.profile)
 });
 
-/// A value, with its source.
+/// A value of a profile, with its source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SourcedValue {
     pub value: f64,
-    /// A document, or `assumed`.
+    /// The document from which the value comes, or `assumed`.
     pub source: String,
 }
 
 impl SourcedValue {
-    /// Whether the value is assumed: nobody has measured or published it.
+    /// Returns whether the value is assumed, because nobody has measured or published it.
     #[must_use]
     pub fn is_assumed(&self) -> bool {
         self.source == "assumed"
     }
 }
 
-/// How an actuator responds to a drive.
+/// The kind of an actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// It follows samples, best at its resonance.
+    /// An actuator that plays samples, and is strongest at its resonance.
     Resonant,
-    /// A rotating mass, which can only be given a level.
+    /// A motor with a rotating mass. It cannot play samples: it only receives a level.
     Rotating,
 }
 
-/// An actuator.
+/// The profile of an actuator: what it can play.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
     pub name: String,
-    /// A short description.
+    /// A short description of the actuator.
     pub title: String,
     pub kind: Kind,
     /// Frequency at which the actuator is strongest, hertz.
     pub resonance_hz: SourcedValue,
     /// Quality factor: resonance frequency divided by bandwidth.
     pub q: SourcedValue,
-    /// Range of frequencies that it can play, hertz.
+    /// Lowest and highest frequency that the actuator can play, hertz.
     pub low_hz: SourcedValue,
     pub high_hz: SourcedValue,
-    /// Strongest peak acceleration of the housing, at the resonance, m/s².
+    /// Largest peak acceleration of the housing, at the resonance, m/s².
     pub strongest_m_s2: SourcedValue,
-    /// Time from a command to the vibration, milliseconds.
+    /// Time from a command to the start of the vibration, milliseconds.
     pub latency_ms: SourcedValue,
     /// Shortest time between two points of an envelope, milliseconds.
     pub shortest_point_ms: SourcedValue,
@@ -80,7 +81,7 @@ impl Profile {
     /// Finds a profile by its name.
     ///
     /// # Errors
-    /// When no profile has the name; the error lists all names.
+    /// When no profile has the name. The error lists all names.
     pub fn find(name: &str) -> Result<&'static Self, ExchangeError> {
         let found = PROFILES.iter().find(|profile| profile.name == name);
         found.ok_or_else(|| ExchangeError::UnknownProfile {
@@ -105,7 +106,7 @@ impl Profile {
     }
 
     /// Returns the fraction of its strongest acceleration that the actuator reaches at a frequency,
-    /// 0 to 1; 0 outside its range.
+    /// 0 to 1. Outside its range the fraction is 0.
     #[must_use]
     pub fn response(&self, hertz: f64) -> f64 {
         if !(self.low_hz.value..=self.high_hz.value).contains(&hertz) {
@@ -120,19 +121,20 @@ impl Profile {
         }
     }
 
-    /// Returns its strongest peak acceleration at a frequency, m/s².
+    /// Returns the largest peak acceleration of the actuator at a frequency, m/s².
     #[must_use]
     pub(crate) fn strongest_at(&self, hertz: f64) -> f64 {
         self.strongest_m_s2.value * self.response(hertz)
     }
 
-    /// Returns the frequency at a position in its range; positions go from 0 to 1.
+    /// Returns the frequency, hertz, at a position in the actuator's range. Positions go from 0 to
+    /// 1.
     #[must_use]
     pub fn hertz_of(&self, part: f64) -> f64 {
         self.low_hz.value + part * (self.high_hz.value - self.low_hz.value)
     }
 
-    /// Returns the position of a frequency in its range, from 0 to 1.
+    /// Returns the position of a frequency in the actuator's range, from 0 to 1.
     #[must_use]
     pub fn part_of(&self, hertz: f64) -> f64 {
         let part = (hertz - self.low_hz.value) / (self.high_hz.value - self.low_hz.value);
@@ -146,8 +148,8 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|profile| &profile.name[..]).collect()
 }
 
-/// Returns a Markdown table of the profiles, for documents. A published value has the number of its
-/// source in the list below the table.
+/// Returns a Markdown table of the profiles, for documents. Next to a published value stands the
+/// number of its source, which refers to the list below the table.
 #[must_use]
 pub fn profiles_table() -> String {
     let mut sources: Vec<&str> = Vec::new();

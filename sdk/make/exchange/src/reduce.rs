@@ -1,12 +1,13 @@
-//! Reduction of what an asset plays to what an actuator can play.
+//! Reduces what an asset plays to what an actuator can play.
 //!
-//! **One tone.** A block's powers in bands are each taken relative to the detection threshold in
-//! the band, and added up to the strength that is felt. The tone is equally far above its own
-//! threshold. Its frequency is the mean of the bands' frequencies, weighted by what is felt, within
-//! the actuator's range. Where the actuator is too weak, the frequency moves towards its resonance,
-//! no further than necessary. Where it is too weak at every frequency, the strongest possible tone
-//! is played, and the time is counted as limited. **Samples** are filtered by the inverse of the
-//! actuator's response, which raises no frequency by more than 12 dB.
+//! **One tone.** In each block, the power of each band is divided by the squared detection
+//! threshold in this band. The sum over all bands is the strength with which the block is felt. The
+//! tone gets the same strength relative to its own threshold. Its frequency is the mean of the
+//! bands' frequencies, weighted by their felt strength, within the actuator's range. If the
+//! actuator is too weak at this frequency, the frequency moves towards the resonance, no further
+//! than necessary. If the actuator is too weak at every frequency, it plays the strongest possible
+//! tone, and the time counts as limited. **Samples** are filtered by the inverse of the actuator's
+//! response, which raises no frequency by more than 12 dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;
@@ -16,21 +17,22 @@ use crate::heard::{Block, Heard, acceleration_of, threshold};
 use crate::pattern::Pattern;
 use crate::profile::{Kind, Profile};
 
-/// Number of steps in which a frequency moves to the resonance.
+/// Number of steps between a frequency and the resonance.
 const STEPS: usize = 32;
 /// Smallest response of the actuator that is still inverted: −12 dB.
 const LEAST_RESPONSE: f64 = 0.25;
 /// Resolution of the inverse filter, hertz.
 const RESOLUTION_HZ: f64 = 16.0;
 
-/// A pattern of one tone, and how often the actuator was too weak for it.
+/// A pattern with one tone, and how often the actuator is too weak for it.
 pub(crate) struct Reduction {
     pub(crate) pattern: Pattern,
-    /// Fraction of the time in which the actuator is too weak.
+    /// Fraction of the time during which the actuator is too weak, 0 to 1.
     pub(crate) limited: f64,
 }
 
-/// Reduces what was heard to one tone; with `fixed`, always at the resonance.
+/// Reduces what an asset plays to one tone. If `fixed` is true, the tone is always at the
+/// resonance.
 pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduction {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let (mut level, mut frequency_hz, mut limited) = (Vec::new(), Vec::new(), 0usize);
@@ -58,7 +60,7 @@ pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reducti
     }
 }
 
-/// Computes how strongly a block is felt.
+/// Computes how strongly blocks are felt.
 struct Felt {
     thresholds: Vec<f64>,
     middles_hz: Vec<f64>,
@@ -72,14 +74,14 @@ impl Felt {
         }
     }
 
-    /// Returns the amplitude relative to the threshold, and the mean frequency weighted by what is
-    /// felt.
+    /// Returns the felt amplitude of a block relative to the threshold, and the mean frequency
+    /// weighted by felt strength.
     fn strength(&self, block: &Block) -> (f64, f64) {
         let (mut energy, mut moment) = (0.0, 0.0);
         for ((power, threshold), hertz) in
             block.powers.iter().zip(&self.thresholds).zip(&self.middles_hz)
         {
-            // A sine of amplitude A has the mean square A²/2.
+            // A sine of amplitude A has a mean square of A²/2.
             let own = 2.0 * power / (threshold * threshold);
             energy += own;
             moment += own * libm::log(*hertz);
@@ -90,14 +92,15 @@ impl Felt {
 }
 
 struct Tone {
-    /// Amplitude from 0 to 1, relative to the strongest at its frequency; for a rotating mass, the
-    /// level.
+    /// Amplitude from 0 to 1, relative to the strongest vibration at the frequency. For a rotating
+    /// mass, it is the level.
     amplitude: f64,
     hertz: f64,
     is_limited: bool,
 }
 
-/// The tone at the frequency nearest to the wanted one at which the actuator is strong enough.
+/// Returns the tone of a resonant actuator. Its frequency is the one nearest to the wanted
+/// frequency at which the actuator is strong enough.
 fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let resonance_hz = profile.resonance_hz.value;
     let wanted_hz = if wanted_hz > 0.0 {
@@ -108,24 +111,25 @@ fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let steps = (0..=STEPS)
         .map(|step| wanted_hz * libm::pow(resonance_hz / wanted_hz, step as f64 / STEPS as f64));
     let mut tones = steps.map(|hertz| {
-        // Rounding of the power may step over an end of the range, where the response is 0.
+        // Rounding may put the frequency slightly outside the range, where the response is 0.
         let hertz = hertz.clamp(profile.low_hz.value, profile.high_hz.value);
         let needed = strength * threshold(Quantity::Acceleration, hertz);
         let part = needed / profile.strongest_at(hertz);
         Tone { amplitude: part.min(1.0), hertz, is_limited: part > 1.0 }
     });
-    // The first one is nearest to the wanted frequency: steps go from there to the resonance.
+    // The first tone that is found is nearest to the wanted frequency, because the steps go from
+    // there to the resonance.
     let enough = tones.by_ref().find(|tone| !tone.is_limited);
     enough.unwrap_or(Tone { amplitude: 1.0, hertz: resonance_hz, is_limited: true })
 }
 
-/// The smallest level of a motor at which it is felt as strongly.
+/// Returns the tone of a motor: the smallest level at which the motor is felt at least as strongly.
 fn rotating(profile: &Profile, strength: f64) -> Tone {
     let (low_hz, high_hz) = (profile.low_hz.value, profile.high_hz.value);
     let felt = |hertz: f64| profile.strongest_at(hertz) / threshold(Quantity::Acceleration, hertz);
     let tone =
         |hertz: f64, is_limited: bool| Tone { amplitude: hertz / high_hz, hertz, is_limited };
-    // Silence is closer to this than the weakest vibration of the motor.
+    // Silence is closer to the wanted strength than the weakest vibration of the motor.
     if strength < 0.5 * felt(low_hz) {
         return Tone { amplitude: 0.0, hertz: low_hz, is_limited: false };
     }
@@ -136,7 +140,7 @@ fn rotating(profile: &Profile, strength: f64) -> Tone {
     enough.map_or_else(|| tone(high_hz, true), |hertz| tone(hertz, false))
 }
 
-/// Adds points at time 0 and at the end, with the first and the last value.
+/// Adds a point with the first value at time 0, and a point with the last value at the end.
 fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     if let (Some(first), Some(last)) = (curve.first().copied(), curve.last().copied()) {
         if first.time_s > 0.0 {
@@ -149,8 +153,8 @@ fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     curve
 }
 
-/// What an actuator plays of a file's pattern. The frequency of a motor follows its level, and its
-/// strength the square of the level.
+/// Returns what an actuator plays of a file's pattern. In a motor, the frequency follows the level,
+/// and the strength follows the square of the level.
 pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     if profile.kind == Kind::Resonant {
         return pattern;
@@ -172,14 +176,14 @@ pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     Pattern { level: level.iter().map(turns).collect(), exponent: 2, frequency_hz, ..pattern }
 }
 
-/// Several tones, with their amplitudes over time.
+/// Several tones, each with its amplitude over time.
 pub(crate) struct Tones {
     pub(crate) tones: Vec<(f64, Vec<Point>)>,
     pub(crate) limited: f64,
 }
 
-/// Reduces what was heard to one tone in each of several bands. Bands in which the actuator is weak
-/// are played at its resonance.
+/// Reduces what an asset plays to one tone for each of several bands. If the actuator is weak in a
+/// band, the tone plays at the resonance.
 pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Tones {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let mut sums = vec![0.0f64; heard.blocks.len()];
@@ -199,8 +203,8 @@ pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Tones {
     Tones { tones, limited }
 }
 
-/// Groups bands, each group with one frequency: its own, or the resonance if the actuator is weak
-/// at its own.
+/// Groups bands. Each group gets one frequency: its own or, if the actuator is weak there, the
+/// resonance.
 fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<usize>)> {
     let own = middles_hz.len().div_ceil(count.max(1)).max(1);
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -213,7 +217,7 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
             profile.resonance_hz.value
         };
         let bands = group * own..group * own + middles.len();
-        // Exact equality suffices: equal frequencies are copies of the same resonance.
+        // Exact equality suffices, because equal frequencies are copies of the same resonance.
         match groups.iter_mut().find(|(other, _)| *other == hertz) {
             Some((_, all)) => all.extend(bands),
             None => groups.push((hertz, bands.collect())),
@@ -222,12 +226,12 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
     groups
 }
 
-/// Returns the samples within ±1 that drive the actuator, and the fraction of them that was too
-/// strong.
+/// Returns the samples that drive the actuator, limited to the range from -1 to 1, and the fraction
+/// of samples that were limited.
 pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
     let strongest = profile.strongest_m_s2.value;
     let gain = |hertz: f64| match profile.response(hertz) {
-        // Outside its range the actuator plays nothing, and no gain would change that.
+        // Outside its range the actuator plays nothing, whatever the gain.
         response if response > 0.0 => {
             acceleration_of(heard.quantity, hertz) / (strongest * response.max(LEAST_RESPONSE))
         }
@@ -238,7 +242,8 @@ pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
     let mut filter = Fir::with_magnitude(taps, heard.rate_hz, gain);
     let delay = taps / 2;
     let mut samples: Vec<f32> = heard.samples.iter().map(|x| *x as f32).collect();
-    // The filter delays by half its length, and the last samples must come out of it too.
+    // The filter delays by half its length. Zeros are appended, so that the last samples also come
+    // out of it.
     samples.resize(samples.len() + delay, 0.0);
     filter.process(&mut samples);
     let filtered = samples.into_iter().skip(delay).map(f64::from);

@@ -1,4 +1,4 @@
-//! Where the files of a format store the licence and the author of a texture.
+//! Reads the licence and the author of a texture (its rights) from the files of each format.
 
 use htex_format::{Rights, check_license};
 use serde::Deserialize;
@@ -9,7 +9,7 @@ use crate::format::Format;
 use crate::gltf;
 use crate::map;
 
-/// The place of the rights in a format, and how it is read.
+/// The place in a format's files that states the rights, and the function that reads it.
 #[derive(Debug, Clone, Copy)]
 pub struct RightsPlace {
     /// Description of the place.
@@ -17,7 +17,7 @@ pub struct RightsPlace {
     pub(crate) read: fn(&[u8]) -> Rights,
 }
 
-/// For a format without such a place: the separate file `NAME.license`.
+/// The place for a format whose files cannot state rights: the separate file `NAME.license`.
 pub(crate) const BESIDE: RightsPlace =
     RightsPlace { place: "FILE.license", read: |_| Rights::default() };
 pub(crate) const HAPTIC: RightsPlace = RightsPlace {
@@ -49,7 +49,7 @@ fn from_text(text: Option<String>) -> Rights {
     text.map(|text| Rights::from_text(&text)).unwrap_or_default()
 }
 
-/// The parts of a JSON file that may hold text for people; all other parts are ignored.
+/// The parts of a JSON file that may contain text for readers. All other parts are ignored.
 #[derive(Deserialize)]
 struct Head {
     #[serde(default, alias = "Metadata")]
@@ -60,8 +60,8 @@ struct Head {
     asset: Value,
 }
 
-/// A string of a JSON file: either `description`, or a key inside `metadata` or `asset`. `None` if
-/// it is missing.
+/// Returns a string of a JSON file: `description`, or a key inside `metadata` or `asset`. Returns
+/// `None` if it is missing.
 pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     let head: Head = serde_json::from_slice(bytes).ok()?;
     let part = match part {
@@ -72,19 +72,19 @@ pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     part.as_str().map(str::to_owned)
 }
 
-/// The rights that a file and the file `NAME.license` beside it state.
+/// The rights that a file and the file `NAME.license` next to it state.
 pub(crate) struct FileRights {
     pub(crate) rights: Rights,
-    /// What was not accepted, each as a sentence.
+    /// What was not accepted, as a list of sentences.
     pub(crate) left_out: Vec<String>,
 }
 
 impl FileRights {
-    /// Combines the rights stated inside the file and beside it. A conflict does not matter for a
-    /// value that the user gives anyway.
+    /// Combines the rights that the file and the `.license` file next to it state. A conflict does
+    /// not matter if the user gives the value.
     ///
     /// # Errors
-    /// When the two state different licences or authors, and the user gives none.
+    /// When both state different licences or authors, and the user gives none.
     pub(crate) fn read(
         format: &Format,
         bytes: &[u8],
@@ -108,10 +108,10 @@ impl FileRights {
         Ok(stated)
     }
 
-    /// Checks that an asset inside the file states the same rights, if it states any.
+    /// Checks that an asset inside the file states the same rights, or none.
     ///
     /// # Errors
-    /// When it states another licence or author, and the user gives none.
+    /// When the asset states another licence or author, and the user gives none.
     pub(crate) fn check(&self, own: &Rights, given: &Rights) -> Result<(), ExchangeError> {
         agree("license", &own.license, &self.rights.license, &given.license)?;
         agree("author", &own.author, &self.rights.author, &given.author)

@@ -1,5 +1,4 @@
-//! What the user states about the signals of a file, by name: the command's flags and the keys of
-//! recipes.
+//! Settings for the signals of a file. They are flags of the command and keys of recipes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,7 +12,8 @@ use crate::profile_names;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct SignalSettings {
-    /// The value of full scale, which files of haptic signals call 1, in the quantity's unit.
+    /// The value, in the quantity's unit, for which 1 stands in files of haptic signals. In an
+    /// image, the value of white.
     #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     #[cfg_attr(
         feature = "clap",
@@ -27,7 +27,7 @@ pub struct SignalSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_scale: Option<f64>,
 
-    /// Distance between an image's pixels, mm.
+    /// Distance between the pixels of an image, mm.
     #[schemars(range(max = 64), extend("exclusiveMinimum" = 0))]
     #[cfg_attr(
         feature = "clap",
@@ -42,8 +42,8 @@ pub struct SignalSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_mm: Option<f64>,
 
-    /// Name of the actuator in whose range the frequencies of haptic signals are positions; by
-    /// default the format's own.
+    /// Name of the actuator, for files that give frequencies as positions in an actuator's range.
+    /// By default the format's own.
     #[cfg_attr(feature = "clap", arg(
         long,
         value_name = "NAME",

@@ -1,4 +1,4 @@
-//! A finger's stroke: speed and force over time, read from a CSV.
+//! Reads a finger's stroke, its speed and force over time, from a CSV file.
 
 use std::path::Path;
 
@@ -7,28 +7,29 @@ use htex_play::Motion;
 
 use crate::curve::{Point, value_at};
 
-/// A stroke: speed and force over time.
+/// A stroke of a finger: its speed and force over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
     speed_mm_s: Vec<Point>,
     force_n: Vec<Point>,
-    /// Distance along the path, mm.
+    /// Distance along the path over time, mm.
     way_mm: Vec<Point>,
-    /// Assumptions of the reader, each as a sentence.
+    /// Assumptions that the reader made, as a list of sentences.
     pub warnings: Vec<String>,
 }
 
 impl Stroke {
-    /// Reads a CSV of time, speed and force (`t_s`, `speed_mm_s`, `force_n`), or a trace of time,
-    /// position and force.
+    /// Reads a CSV file with time, speed and force (`t_s`, `speed_mm_s`, `force_n`), or a trace
+    /// with time, position and force.
     ///
     /// # Errors
-    /// As [`htex_author::recording::read_trace`], except that a speed may stand in for positions.
+    /// As for [`htex_author::recording::read_trace`], except that the file may have a speed instead
+    /// of positions.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_stroke(path)?))
     }
 
-    /// As [`Self::open`], but reads a file in memory. Messages name it `file`.
+    /// Does the same as [`Self::open`], for a file in memory. Messages call it `file`.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -40,7 +41,7 @@ impl Stroke {
         let start_s = read.t_s.first().copied().unwrap_or(0.0);
         let curve = |values: &[f64]| -> Vec<Point> {
             let points = read.t_s.iter().zip(values);
-            // A trace may begin at any time of its clock; a stroke begins at 0.
+            // A trace may begin at any time. A stroke begins at 0.
             points.map(|(t, value)| Point::new(t - start_s, *value)).collect()
         };
         let speed_mm_s = curve(&read.speed_mm_s);
@@ -49,7 +50,7 @@ impl Stroke {
         let mut before: Option<&Point> = None;
         for point in &speed_mm_s {
             if let Some(before) = before {
-                // Exact, because the speed is linear between points.
+                // This sum is exact, because the speed is linear between points.
                 way += 0.5 * (before.value + point.value) * (point.time_s - before.time_s);
             }
             way_mm.push(Point::new(point.time_s, way));

@@ -1,4 +1,5 @@
-//! WAV: one channel of 32-bit floats within ±1, to drive a voice coil or an amplifier.
+//! Writes WAV files that drive a voice coil or an amplifier: one channel of 32-bit floats between
+//! -1 and 1.
 
 use std::io::Cursor;
 
@@ -26,7 +27,7 @@ pub(crate) fn to_bytes(samples: &[f64], rate_hz: u32, rights: &Rights) -> Result
     Ok(bytes.into_inner())
 }
 
-/// Reads what [`to_bytes`] wrote.
+/// Reads a file that [`to_bytes`] wrote.
 pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Vec<f64>, Fault> {
     let failed = |error: hound::Error| Fault::whole(error.to_string());
     let reader = WavReader::new(bytes).map_err(failed)?;

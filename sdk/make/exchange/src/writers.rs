@@ -1,5 +1,5 @@
-//! The writers of the formats. Each reduces what is heard to what the actuator can do, writes the
-//! file and reads it back.
+//! The writers of the formats. Each one reduces what the asset plays to what the actuator can play,
+//! writes the file and reads it back.
 
 use crate::android::{
     Android, BasicEnvelope, BasicPoint, LONGEST_POINT_MS, Waveform, WaveformEnvelope, WaveformPoint,
@@ -16,13 +16,13 @@ use htex_format::{Manifest, Quantity};
 
 /// Largest number of points in an envelope if the format has no limit.
 const MANY: usize = 4_000;
-/// Number of tones in a vectorial file: the bands that a channel of level 1 may have.
+/// Number of tones in a vectorial file. It is the largest number of bands in a channel of level 1.
 const TONES: usize = 7;
-/// Points of a curve are left out if they are within this distance of the line between their
-/// neighbours.
+/// Tolerance when curves are simplified: points that are closer to the line between the remaining
+/// points are left out.
 const TOLERANCE: f64 = 1e-3;
-/// Lowest level of a basic envelope above the threshold, decibels (documentation of
-/// `VibrationEffect.BasicEnvelopeBuilder`).
+/// Level above the detection threshold, decibels, for which the intensity 0 of a basic envelope
+/// stands (documentation of `VibrationEffect.BasicEnvelopeBuilder`).
 const LEAST_SL_DB: f64 = 10.0;
 
 pub(crate) fn haptic(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
@@ -78,7 +78,7 @@ fn one_envelope(
     })
 }
 
-/// Rounds values to the digits that a file needs, and leaves out points at which the curve does not
+/// Rounds values to the digits that a file needs, and leaves out points where the curve does not
 /// bend.
 fn thin(pattern: &mut Pattern) {
     let rounded =
@@ -88,7 +88,7 @@ fn thin(pattern: &mut Pattern) {
     }
     pattern.to_s = libm::round(pattern.to_s * 1e6) / 1e6;
     pattern.level = simplified(&pattern.level, TOLERANCE);
-    // Frequencies are in hertz and not within 0 to 1: a tenth of a hertz.
+    // Frequencies are in hertz instead of 0 to 1, so their tolerance is a tenth of a hertz.
     pattern.frequency_hz = simplified(&pattern.frequency_hz, TOLERANCE * 1e2);
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     }
     let heard = job.playing.heard(RATE_HZ, point_s)?;
     let free = one_tone(&heard, job.profile, false);
-    // The oldest form has amplitudes alone: the device chooses the frequency, which is its
+    // The oldest form has only amplitudes. The device chooses the frequency, which is its
     // resonance.
     let fixed = one_tone(&heard, job.profile, true);
     let effect = Android::new(
@@ -134,14 +134,15 @@ pub(crate) fn android(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     })
 }
 
-/// Durations of points in whole milliseconds; together they last as long as what is heard. If the
-/// last block is shorter than the shortest point, it lengthens the previous one.
+/// Returns the durations of points in whole milliseconds. Together they last as long as what is
+/// played. If the last block is shorter than the shortest allowed point, it is added to the
+/// previous point.
 fn durations_ms(job: &Job<'_>, heard: &Heard) -> Vec<u64> {
     let end_s = |count: usize| (count as f64 * heard.block_s).min(heard.seconds());
     let shortest_ms = (libm::ceil(job.profile.shortest_point_ms.value) as u64).max(1);
     let (mut before, mut durations) = (0, Vec::new());
     for count in 1..=heard.blocks.len() {
-        // The ends are rounded and not the durations, so that the errors do not add up.
+        // The end times are rounded, not the durations, so that rounding errors do not add up.
         let end = libm::round(end_s(count) * 1e3) as u64;
         let own = end.saturating_sub(before);
         before = end;
@@ -164,7 +165,8 @@ fn as_waveform(job: &Job<'_>, heard: &Heard, fixed: &Pattern) -> Waveform {
     Waveform { amplitudes: timings_ms.iter().map(amplitude).collect(), timings_ms, repeat: -1 }
 }
 
-/// The points at the ends of blocks, and a final point.
+/// Returns the points at the ends of blocks, and a final point. Each has a level, a frequency and a
+/// duration.
 fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64)> {
     let mut time_s = 0.0;
     let mut points: Vec<(f64, f64, u64)> = Vec::new();
@@ -173,8 +175,8 @@ fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64
     for (index, ms) in durations.into_iter().enumerate() {
         time_s += ms as f64 / 1e3;
         let at = |curve: &[Point]| value_at(curve, time_s).unwrap_or(0.0);
-        // Android refuses a basic envelope that ends at another intensity, and all envelopes share
-        // these points.
+        // Android refuses a basic envelope that does not end at intensity 0. All envelopes use the
+        // same points.
         let level = if index == last { 0.0 } else { at(&pattern.level) };
         points.push((
             libm::round(level * 1e4) / 1e4,
@@ -198,8 +200,9 @@ fn as_envelope(job: &Job<'_>, heard: &Heard, free: &Pattern) -> WaveformEnvelope
     }
 }
 
-/// Converts amplitudes to intensities. An intensity is the level in decibels above 10 dB, relative
-/// to the strongest sensation. Android only states that 0.5 feels like half, and gives no formula.
+/// Converts amplitudes to intensities. An intensity is a position on a scale of decibels, from 10
+/// dB above the threshold (0) to the strongest sensation (1). Android gives no formula, and states
+/// only that 0.5 feels half as strong.
 fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     let profile = job.profile;
     let above_db = |hertz: f64, part: f64| {
@@ -223,8 +226,8 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     }
 }
 
-/// Positions in space for an export at a condition; positions in time along a stroke and for a
-/// scene.
+/// Returns positions in space for an export at a condition, and positions in time for an export
+/// along a stroke or of a scene.
 fn space(job: &Job<'_>) -> Space {
     let speed = job.playing.source.speed_mm_s();
     Space { speed_mm_s: speed.filter(|speed| *speed > 0.0) }
@@ -255,7 +258,7 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
 
 type Coded = (Hjif, Heard, f64);
 
-/// Description with the name and the rights.
+/// Returns a description with the name and the rights.
 fn described(job: &Job<'_>) -> String {
     let source = &job.playing.source;
     source.rights().described(source.name())

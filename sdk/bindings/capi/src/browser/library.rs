@@ -1,6 +1,6 @@
-//! Libraries whose bytes JavaScript fetches (`sdk/bindings/web/src/htexlib.js`). Each call says which bytes
-//! it needs next, and JavaScript then passes them in. Offsets are doubles, as in JavaScript, so a
-//! file has less than 2^53 bytes.
+//! Texture libraries whose bytes JavaScript fetches (`sdk/bindings/web/src/htexlib.js`). The code
+//! here states which bytes it needs next, and JavaScript fetches them and passes them in. Offsets
+//! are doubles, as in JavaScript, so a file must have fewer than 2^53 bytes.
 
 use std::ffi::c_char;
 use std::ops::Range;
@@ -70,8 +70,8 @@ pub extern "C" fn htex_index_free(index: u64) -> htex_status {
     guarded(|| INDEXES.remove(index).map(drop))
 }
 
-/// Writes which bytes are needed next to open the library: start and end. They are equal when it is
-/// open.
+/// Writes which bytes are needed next to open the library: the offsets of their start and end. Both
+/// are equal once the library is open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
     guarded(|| {
@@ -85,8 +85,8 @@ pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_st
     })
 }
 
-/// Receives the requested bytes, or fewer if the file ends earlier. The file has `file_bytes`
-/// bytes.
+/// Passes in the requested bytes, or fewer if the file ends earlier. `file_bytes` is the size of
+/// the whole file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_give(
     index: u64,
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn htex_index_give(
         let State::Opening(opening) = &mut *state else {
             return Err(Failure::argument("the library is open already"));
         };
-        // `give` consumes it. After an error nothing is left to go on with.
+        // `give` consumes `opening`, so after an error the library cannot be opened further.
         let opening = opening.take().ok_or(Failure::argument("the library could not be opened"))?;
         *state = match opening.give(bytes, file_bytes as u64)? {
             Progress::More(opening) => State::Opening(Some(opening)),
@@ -132,7 +132,8 @@ pub unsafe extern "C" fn htex_index_json(
     })
 }
 
-/// Writes which page of the index contains a texture, if any does.
+/// Writes the number of the only index page that can list a texture with this name. If no page can,
+/// returns HTEX_STATUS_ABSENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_page_of(
     index: u64,
@@ -149,7 +150,7 @@ pub unsafe extern "C" fn htex_index_page_of(
     })
 }
 
-/// Writes the byte range of a page: start and end.
+/// Writes the byte range of an index page: the offsets of its start and end.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_page_range(
     index: u64,
@@ -167,7 +168,7 @@ pub unsafe extern "C" fn htex_index_page_range(
     })
 }
 
-/// Reads a page of the index. The calls below look up entries in it.
+/// Reads a page of the index from its bytes. The calls below look up entries in this page.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_read_page(
     index: u64,
@@ -179,7 +180,7 @@ pub unsafe extern "C" fn htex_index_read_page(
         let mut state = INDEXES.exclusive(index)?;
         // SAFETY: the pointers are the caller's.
         let bytes = unsafe { slice(bytes, len) }?;
-        // Read before it replaces the old page, which stays after an error.
+        // Read first, so that the old page stays in place after an error.
         let read = state.index()?.read_leaf(page as usize, bytes)?;
         if let State::Open(_, entries) = &mut *state {
             *entries = read;
@@ -188,7 +189,7 @@ pub unsafe extern "C" fn htex_index_read_page(
     })
 }
 
-/// Writes the entries of the page that was read, as JSON.
+/// Writes all entries of the current page as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_entries_json(
     index: u64,
@@ -204,8 +205,8 @@ pub unsafe extern "C" fn htex_index_entries_json(
     })
 }
 
-/// Writes those entries of the page that match a query (`LibraryQuery` in
-/// `sdk/bindings/web/src/index.d.ts`), as JSON.
+/// Writes, as JSON, the entries of the current page that match a query (`LibraryQuery` in
+/// `sdk/bindings/web/src/index.d.ts`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_find_json(
     index: u64,
@@ -228,7 +229,7 @@ pub unsafe extern "C" fn htex_index_find_json(
     })
 }
 
-/// A query in the form that JavaScript writes.
+/// A query as JavaScript writes it.
 #[derive(Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
 struct QueryDocument {
@@ -267,8 +268,8 @@ unsafe fn write_entries(
     unsafe { write_text(&json, out, capacity, length) }
 }
 
-/// Writes the byte ranges of a texture in the page that was read: start and end of each, for at
-/// most `capacity` ranges. `length` receives the number of ranges.
+/// Writes the byte ranges in the file that make up a texture of the current page: the start and end
+/// of each, for at most `capacity` ranges. `length` receives the number of all its ranges.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_ranges(
     index: u64,
@@ -292,8 +293,8 @@ pub unsafe extern "C" fn htex_index_ranges(
     })
 }
 
-/// Assembles a texture in the page that was read from the bytes of its ranges, one after the other,
-/// and compares it with its hash. The texture has as many bytes as the ranges.
+/// Assembles a texture of the current page, and checks its hash. `bytes` holds the bytes of the
+/// texture's ranges, one range after the other. `out` must have room for as many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_assemble(
     index: u64,
@@ -323,7 +324,7 @@ pub unsafe extern "C" fn htex_index_assemble(
 /// Writes the start and end of a range.
 ///
 /// # Safety
-/// As for pointers: there are two numbers, or the pointer is NULL.
+/// As in the module `pointers`: `out` is NULL or points to two numbers.
 unsafe fn write_range(range: &Range<u64>, out: *mut f64) -> Result<(), Failure> {
     // SAFETY: as here.
     let out = unsafe { slice_mut(out, 2) }?;

@@ -13,8 +13,8 @@ use crate::pointers::{place, slice, slice_mut, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::{VOICES, htex_voice};
 
-/// Writes the model id of a representation that is given by its id or short name, or of the one
-/// that a voice would choose. Loads no model.
+/// Writes the full model id of the representation that `model` selects by its id or short name. If
+/// `model` is NULL, writes the id of the representation that a voice would choose. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_chosen_model(
     asset: htex_asset,
@@ -32,8 +32,8 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
     })
 }
 
-/// Writes the index of the condition at which a representation is played when no motion is given.
-/// `model` is as for htex_asset_magnitude. Loads no model.
+/// Writes the index of the condition at which a representation plays if no motion is given. `model`
+/// works as in htex_asset_magnitude. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_default_condition(
     asset: htex_asset,
@@ -50,7 +50,8 @@ pub unsafe extern "C" fn htex_asset_default_condition(
     })
 }
 
-/// Writes the asset's law, as in a manifest.
+/// Writes the asset's law as JSON, in the form of the manifest. The law states how frequency and
+/// level change with speed and force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_law_json(
     asset: htex_asset,
@@ -67,8 +68,8 @@ pub unsafe extern "C" fn htex_asset_law_json(
     })
 }
 
-/// Writes the parameters of a representation at a motion: numbers and lists of numbers by name.
-/// `model` and `at` are as for htex_asset_magnitude.
+/// Writes the parameters of a representation at a motion, as a JSON object: each name has a number
+/// or a list of numbers. `model` and `at` work as in htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_parameters_json(
     asset: htex_asset,
@@ -96,9 +97,9 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
     })
 }
 
-/// Writes the magnitudes of a representation at a recorded condition, as a recording of its voice
-/// would show them, on the grid of the asset's band, which has `len` frequencies. Indices start at
-/// 0.
+/// Writes the spectrum that a recording of a representation's voice would show at a recorded
+/// condition. The frequencies are those of the grid of the asset's band, and `len` must be their
+/// number. `condition` is an index that starts at 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_read_magnitude(
     asset: htex_asset,
@@ -143,8 +144,8 @@ fn read_magnitude(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Writes the magnitudes that a recording of a voice would show at its current motion, at
-/// frequencies in Hz. Both arrays may be the same one.
+/// Writes the spectrum that a recording of a voice would show at its current motion: one magnitude
+/// for each frequency in Hz. Both arrays may be the same one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_magnitude(
     voice: htex_voice,
@@ -162,8 +163,8 @@ pub unsafe extern "C" fn htex_voice_magnitude(
     })
 }
 
-/// Writes how a voice plays a motion, or its current motion, and whether the motion lies within the
-/// recorded conditions.
+/// Writes, as JSON, how a voice plays a motion, and whether the motion lies within the recorded
+/// conditions. If `motion` is NULL, it is the voice's current motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage_json(
     voice: htex_voice,

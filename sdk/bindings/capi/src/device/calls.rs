@@ -80,7 +80,7 @@ pub(super) unsafe fn list_json(
 /// Finds a device by its name, and parses its settings.
 ///
 /// # Safety
-/// Texts of the caller's.
+/// As in the module `pointers`, for both texts.
 unsafe fn device_and_settings(
     devices: &Devices,
     name: *const c_char,
@@ -163,7 +163,7 @@ pub(super) unsafe fn write(
         let mut open = DEVICES.exclusive(device.id)?;
         // SAFETY: the pointers are the caller's.
         let (samples, written) = unsafe { (slice(samples, frames)?, place(written)?) };
-        // Also right if the device fails.
+        // Set first, so that it is also correct if the device fails.
         *written = 0;
         let timeout = Duration::from_millis(timeout_ms.into());
         *written = open.device.write(samples, timeout)?;

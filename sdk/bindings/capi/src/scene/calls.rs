@@ -15,7 +15,7 @@ use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
 use crate::reader::{Files, htex_files};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A playing scene, and its plan as JSON.
+/// A scene that plays, and its plan as JSON.
 struct Playing {
     renderer: Renderer,
     plan_json: String,
@@ -108,7 +108,7 @@ unsafe fn open(
         // SAFETY: the pointers are the caller's.
         let (models, asked, out) =
             unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
-        // The program takes the samples itself.
+        // No devices, because the program itself takes the samples.
         let around =
             Surroundings { models: &models.registry, embedded: models.embedded, devices: None };
         let scene = source.open(&around)?;
@@ -164,7 +164,8 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
                 "the finger's `size` is wrong; set it to sizeof(htex_finger)",
             ));
         }
-        // A single NaN is a failed reading, not an unknown position.
+        // If only one of them is NaN, the reading failed, and the position does not count as
+        // unknown.
         let unknown = finger.x_mm.is_nan() && finger.y_mm.is_nan();
         let place_mm = (!unknown).then_some([finger.x_mm, finger.y_mm]);
         let motion = Motion::new(finger.speed_mm_s, finger.force_n).with_place_mm(place_mm);
@@ -182,7 +183,8 @@ pub(super) unsafe fn render(
         let mut scene = SCENES.exclusive(scene.id)?;
         // SAFETY: the pointers are the caller's.
         let (out, rendered) = unsafe { (slice_mut(out, frames)?, place(rendered)?) };
-        // Also after an error, all frames until the end of the scene are rendered.
+        // Set first, because all frames up to the end of the scene are rendered even after an
+        // error.
         let left = scene.renderer.frames_left().unwrap_or(u64::MAX);
         *rendered = usize::try_from(left).map_or(out.len(), |left| left.min(out.len()));
         *rendered = scene.renderer.render(out)?;

@@ -1,5 +1,5 @@
 //! The FMOD plugin, compiled against stubs of FMOD's headers that were written from its
-//! documentation, and run by hosts that do what FMOD does. FMOD itself was not run.
+//! documentation, and run by hosts that do what FMOD does. The tests do not run FMOD itself.
 
 #[allow(dead_code)] // Of programs in other languages.
 use crate::common::programs;

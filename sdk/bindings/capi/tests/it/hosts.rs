@@ -121,8 +121,8 @@ fn asset_with_module(module: &Path) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// A program that opens an asset with a module but turned no engine on has no new thread, file or
-/// signal handler.
+/// If a program opens an asset with an embedded module without turning on an engine, it gets no new
+/// thread, file or signal handler.
 #[test]
 fn modules_run_only_in_a_program_that_asks_for_them() {
     let Some(project) = Project::new(Language::C, "host_of_modules") else {

@@ -1,5 +1,5 @@
-//! Invalid use of the C functions returns an error with a status and a text, whatever is passed
-//! that C cannot rule out.
+//! Invalid use of the C functions returns an error with a status and a text, for every mistake that
+//! a C compiler cannot catch.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::{Path, PathBuf};

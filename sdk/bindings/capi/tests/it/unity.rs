@@ -52,7 +52,7 @@ fn generated_metas_are_those_of_the_files() {
     assert!(guids.iter().all(|guid| guid.len() == "guid: ".len() + 32));
 }
 
-/// Whatever users of earlier versions refer to keeps its GUID.
+/// Files to which users of earlier versions may refer keep their GUIDs.
 #[test]
 fn a_guid_stays_the_same() {
     assert_eq!(metas::guid("Runtime/HtexSource.cs"), "d730aa622899ec37c515d7e2433d9e1f");
@@ -169,7 +169,8 @@ fn the_package_compiles_for_players() {
     }
 }
 
-/// When scripts change, the editor unloads the code that the library calls, and keeps the library.
+/// When scripts change, the editor unloads the C# code that the library calls, but keeps the
+/// library loaded.
 #[test]
 fn messages_do_not_reach_code_that_the_editor_unloaded() {
     let Some(project) = Project::new(Language::Csharp, "unity_reload") else {

@@ -5,7 +5,7 @@ using UnityEditor.AssetImporters;
 
 namespace Htex.Editor
 {
-    /// <summary>Makes an HtexLibrary of a .htexlib file.</summary>
+    /// <summary>Makes an HtexLibrary from a .htexlib file.</summary>
     [ScriptedImporter(1, "htexlib")]
     public sealed class HtexLibraryImporter : ScriptedImporter
     {

@@ -7,7 +7,10 @@ using UnityEditor.AssetImporters;
 
 namespace Htex.Editor
 {
-    /// <summary>Makes an HtexTexture of a .htex file. Increase the version when the asset has other fields: Unity then imports all again.</summary>
+    /// <summary>
+    /// Makes an HtexTexture from a .htex file. If you change the fields of HtexTexture, increase
+    /// the version: Unity then imports all files again.
+    /// </summary>
     [ScriptedImporter(1, "htex")]
     public sealed class HtexTextureImporter : ScriptedImporter
     {
@@ -17,11 +20,13 @@ namespace Htex.Editor
         }
     }
 
-    /// <summary>What both importers do.</summary>
+    /// <summary>The code that both importers share.</summary>
     internal static class Import
     {
-        /// <summary>Makes the asset of a file, with the file's name as Unity expects it. What libhtex says of a file that it refuses is an
-        /// error of the import.</summary>
+        /// <summary>
+        /// Makes the Unity asset of a file. The asset gets the file's name, as Unity expects. If
+        /// libhtex refuses the file, its error text becomes an error of the import.
+        /// </summary>
         internal static void Add<T>(AssetImportContext context, string identifier, Func<byte[], T> make) where T : UnityEngine.Object
         {
             try

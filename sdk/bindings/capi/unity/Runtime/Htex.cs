@@ -1,9 +1,10 @@
 // Htex.cs: libhtex for C#, in one file. C# 7.3, .NET Standard 2.0, mono, Unity (Mono and IL2CPP).
 //
-// Assets, libraries, voices, scenes and devices are SafeHandles: they are freed with Dispose, or when they are collected. A call holds its object:
-// disposed of by another thread, it is freed when the call has returned, and later calls throw ObjectDisposedException. Calls that can
-// fail throw HtexException; Voice.Render, RenderAdd, SetMotion, SetGain and Envelope, Scene.Render and Scene.SetFinger allocate nothing
-// unless they fail, and may be called in an audio thread.
+// Assets, libraries, voices, scenes and devices are SafeHandles: Dispose frees them, or the garbage
+// collector. If one thread disposes of an object while another thread's call uses it, the object is
+// freed when that call returns. Later calls throw ObjectDisposedException. Calls that fail throw
+// HtexException. Voice.Render, RenderAdd, SetMotion, SetGain and Envelope, Scene.Render and
+// Scene.SetFinger allocate nothing unless they fail, so an audio thread may call them.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
@@ -15,7 +16,10 @@ using System.Text;
 #if !UNITY_5_3_OR_NEWER
 namespace AOT
 {
-    /// <summary>Marks functions that native code calls, which compilers ahead of time find by this name. Unity has it.</summary>
+    /// <summary>
+    /// Marks functions that native code calls. Ahead-of-time compilers find them by this
+    /// attribute's name. Unity defines the attribute itself.
+    /// </summary>
     [AttributeUsage(AttributeTargets.Method)]
     internal sealed class MonoPInvokeCallbackAttribute : Attribute
     {
@@ -50,7 +54,7 @@ namespace Htex
         Device = 16,
     }
 
-    /// <summary>Error of a call of libhtex.</summary>
+    /// <summary>The error of a call to libhtex.</summary>
     public sealed class HtexException : Exception
     {
         public Status Status { get; }
@@ -61,7 +65,7 @@ namespace Htex
         }
     }
 
-    /// <summary>Motion of a finger over a texture.</summary>
+    /// <summary>Motion of a finger over a texture at one moment.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Motion
     {
@@ -70,9 +74,9 @@ namespace Htex
         public double SpeedMmS;
         /// <summary>Normal force, N; finite and not negative.</summary>
         public double ForceN;
-        /// <summary>Position along the path, mm; NaN if it is not known.</summary>
+        /// <summary>Position along the finger's path, mm; NaN if unknown.</summary>
         public double PositionMm;
-        /// <summary>Place on the surface, mm; NaN if it is not known.</summary>
+        /// <summary>Place on the surface, mm; NaN if unknown.</summary>
         public double XMm, YMm;
 
         public Motion(
@@ -96,7 +100,7 @@ namespace Htex
         public double SpeedMmS;
         /// <summary>Normal force, N; not negative.</summary>
         public double ForceN;
-        /// <summary>Position, mm; both NaN if it is not known.</summary>
+        /// <summary>Position, mm. If the position is unknown, set both to NaN.</summary>
         public double XMm, YMm;
 
         public Finger(double speedMmS, double forceN, double xMm = double.NaN, double yMm = double.NaN)
@@ -109,41 +113,49 @@ namespace Htex
         }
     }
 
-    /// <summary>A condition of a recording; NaN if it is not known.</summary>
+    /// <summary>
+    /// A recorded condition: a speed and a normal force. NaN stands for an unknown value.
+    /// </summary>
     [Serializable, StructLayout(LayoutKind.Sequential)]
     public struct Condition
     {
         public double SpeedMmS, ForceN;
     }
 
-    /// <summary>A band of frequencies.</summary>
+    /// <summary>A frequency band.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Band
     {
         public double LowHz, HighHz;
     }
 
-    /// <summary>What a voice played since it was last asked; see htex_voice_envelope.</summary>
+    /// <summary>
+    /// Level and mean frequency of what a voice played since the last call; see
+    /// htex_voice_envelope.
+    /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Envelope
     {
         internal uint Size;
-        /// <summary>RMS of the samples, in the asset's unit; 0 for none.</summary>
+        /// <summary>RMS of the samples, in the asset's unit; 0 if there are none.</summary>
         public double LevelRms;
-        /// <summary>Mean frequency, Hz; 0 for silence.</summary>
+        /// <summary>Mean frequency of the spectrum, weighted by power, Hz; 0 for silence.</summary>
         public double CentroidHz;
-        /// <summary>Number of the samples.</summary>
+        /// <summary>Number of samples since the last call.</summary>
         public ulong Frames;
     }
 
-    /// <summary>The engine of WASM modules; see htex_open_options.</summary>
+    /// <summary>The engine that runs WASM modules; see htex_open_options.</summary>
     public enum Engine
     {
-        /// <summary>Modules are not loaded.</summary>
+        /// <summary>WASM modules are not loaded.</summary>
         Off = 0,
-        /// <summary>Modules run without handlers for signals.</summary>
+        /// <summary>WASM modules run without signal handlers.</summary>
         Checked = 1,
-        /// <summary>Modules run with handlers for signals, which some runtimes of C# do not allow.</summary>
+        /// <summary>
+        /// WASM modules run with process-wide signal handlers. Some C# runtimes do not allow such
+        /// handlers.
+        /// </summary>
         Signals = 2,
     }
 
@@ -154,7 +166,9 @@ namespace Htex
         Warning = 1,
     }
 
-    /// <summary>Options of a voice; null and 0 select the defaults.</summary>
+    /// <summary>
+    /// Options for making a voice. null and 0 select the defaults; see htex_voice_options.
+    /// </summary>
     public sealed class VoiceOptions
     {
         public string Model;
@@ -162,41 +176,52 @@ namespace Htex
         public ulong Seed;
         public Motion? Motion;
         public string Synthesis;
-        /// <summary>Gain of the samples; 0: 1.</summary>
+        /// <summary>Gain of the samples; 0 selects a gain of 1.</summary>
         public double Gain;
-        /// <summary>Greatest magnitude of a sample, in the asset's unit; 0: none.</summary>
+        /// <summary>
+        /// Largest absolute value of a sample after the gain, in the asset's unit; 0 for no limit.
+        /// </summary>
         public double Limit;
-        /// <summary>Number of bands of the envelope, 1 to 32; 0: no envelope.</summary>
+        /// <summary>Number of bands of the envelope, 1 to 32; 0 for no envelope.</summary>
         public int EnvelopeBands;
         public bool FrequencyScaling = true, LevelScaling = true, Contact = true;
-        /// <summary>Highest level of a motion outside the recorded ones, over the strongest recorded level; 0: 4.</summary>
+        /// <summary>
+        /// Highest level that the voice reaches at motions outside the recorded conditions, as a
+        /// multiple of the strongest recorded level; 0 selects 4.
+        /// </summary>
         public double Ceiling;
     }
 
-    /// <summary>Options of opening an asset or a scene.</summary>
+    /// <summary>Options for opening an asset or a scene; see htex_open_options.</summary>
     public sealed class OpenOptions
     {
-        /// <summary>Files of models to load.</summary>
+        /// <summary>Paths of model files to load: native libraries or WASM modules.</summary>
         public string[] Plugins = new string[0];
-        /// <summary>WASM modules of models, which run in a sandbox.</summary>
+        /// <summary>Models as WASM modules in memory. They run in a sandbox.</summary>
         public byte[][] Modules = new byte[0][];
-        /// <summary>The engine that runs modules.</summary>
+        /// <summary>The engine that runs WASM modules.</summary>
         public Engine Engine = Engine.Off;
-        /// <summary>Folder for compiled modules; null: none is written.</summary>
+        /// <summary>Folder that keeps compiled WASM modules; null to keep none.</summary>
         public string Cache;
-        /// <summary>Whether models that assets bring along run, with an engine and in its sandbox.</summary>
+        /// <summary>
+        /// Whether WASM modules that are embedded in assets run. They need an engine, and run in
+        /// its sandbox.
+        /// </summary>
         public bool Embedded = true;
-        /// <summary>Whether installed models are searched for.</summary>
+        /// <summary>Whether installed models are loaded.</summary>
         public bool Installed;
     }
 
     /// <summary>
-    /// Reads `count` bytes of a file from `offset` on to the start of `buffer`; throws if it cannot. It must not call the library. That of a
-    /// library of textures is called by the threads that open textures, several at a time.
+    /// A function of the program that reads `count` bytes of a file, starting at `offset`, into the
+    /// start of `buffer`. It throws if it cannot read them. It must not call libhtex. If the file
+    /// is a library of textures, several threads that open textures may call it at the same time.
     /// </summary>
     public delegate void ReadAt(long offset, byte[] buffer, int count);
 
-    /// <summary>An opened asset. Several threads may use it.</summary>
+    /// <summary>
+    /// An open asset: a texture from a .htex file. Several threads may use it at the same time.
+    /// </summary>
     public sealed class Asset : SafeHandle
     {
         internal Asset(ulong id) : base(IntPtr.Zero, true)
@@ -231,13 +256,19 @@ namespace Htex
             }
         }
 
-        /// <summary>Opens an asset of `length` bytes that a function reads, before this returns.</summary>
+        /// <summary>
+        /// Opens an asset of `length` bytes through the function `read`. The function is not called
+        /// after this returns.
+        /// </summary>
         public static Asset FromReader(long length, ReadAt read, OpenOptions options = null)
         {
             return FromReader(new FileReader(length, read, null), options);
         }
 
-        /// <summary>Opens an asset that a stream holds from its start, which can seek and is left open.</summary>
+        /// <summary>
+        /// Opens an asset from a stream. The asset must begin at the start of the stream. The
+        /// stream must be able to seek, and stays open.
+        /// </summary>
         public static Asset FromStream(Stream stream, OpenOptions options = null)
         {
             return FromReader(FileReader.Of(stream, true), options);
@@ -259,7 +290,7 @@ namespace Htex
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_name(this, o, c, out l)); }
         }
 
-        /// <summary>Band of the spectra.</summary>
+        /// <summary>The frequency band of the asset's spectra.</summary>
         public Band Band
         {
             get
@@ -270,7 +301,9 @@ namespace Htex
             }
         }
 
-        /// <summary>Level of a voice, RMS in the asset's unit.</summary>
+        /// <summary>
+        /// Returns the level at which a representation plays: RMS, in the asset's unit.
+        /// </summary>
         public double LevelRms(string model = null, Motion? at = null)
         {
             double level;
@@ -290,7 +323,7 @@ namespace Htex
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_unit(this, o, c, out l)); }
         }
 
-        /// <summary>Ids of the models of the representations.</summary>
+        /// <summary>The model id of each representation.</summary>
         public string[] Models
         {
             get
@@ -321,7 +354,10 @@ namespace Htex
             }
         }
 
-        /// <summary>Magnitudes of the texture spectrum at frequencies in Hz, in the asset's unit.</summary>
+        /// <summary>
+        /// Returns the spectrum that a recording of the voice would show: one magnitude, in the
+        /// asset's unit, for each frequency in Hz.
+        /// </summary>
         public double[] Magnitude(double[] frequencyHz, string model = null, Motion? at = null)
         {
             var magnitude = new double[frequencyHz.Length];
@@ -329,14 +365,17 @@ namespace Htex
             return magnitude;
         }
 
-        /// <summary>Makes a voice.</summary>
+        /// <summary>Makes a voice, which plays the asset.</summary>
         public Voice Voice(VoiceOptions options = null)
         {
             return new Voice(this, options ?? new VoiceOptions());
         }
     }
 
-    /// <summary>An opened library: a file with thousands of textures. Several threads may use it.</summary>
+    /// <summary>
+    /// An open library: a .htexlib file with any number of textures. Several threads may use it at
+    /// the same time.
+    /// </summary>
     public sealed class Library : SafeHandle
     {
         private Library(ulong id) : base(IntPtr.Zero, true)
@@ -367,14 +406,18 @@ namespace Htex
         }
 
         /// <summary>
-        /// Opens a library of `length` bytes that a function reads, until the library is freed; `close` is then called, also after an error.
+        /// Opens a library of `length` bytes through the function `read`, which is called until the
+        /// library is freed. Then `close` is called. It is also called if opening fails.
         /// </summary>
         public static Library FromReader(long length, ReadAt read, Action close = null)
         {
             return FromReader(new FileReader(length, read, close));
         }
 
-        /// <summary>Opens a library that a stream holds from its start, which can seek. It is disposed of when the library is freed.</summary>
+        /// <summary>
+        /// Opens a library from a stream. The library must begin at the start of the stream, and
+        /// the stream must be able to seek. The stream is disposed of when the library is freed.
+        /// </summary>
         public static Library FromStream(Stream stream)
         {
             return FromReader(FileReader.Of(stream, false));
@@ -388,7 +431,10 @@ namespace Htex
             return new Library(library.Id);
         }
 
-        /// <summary>Opens a texture; reads only its bytes.</summary>
+        /// <summary>
+        /// Opens a texture of the library as an asset. Reads only the parts of the file that it
+        /// needs.
+        /// </summary>
         public Asset Asset(string name, OpenOptions options = null)
         {
             using (var open = new Native.Open(options))
@@ -404,7 +450,7 @@ namespace Htex
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_name(this, o, c, out l)); }
         }
 
-        /// <summary>Number of textures.</summary>
+        /// <summary>Number of textures in the library.</summary>
         public ulong Count
         {
             get
@@ -415,7 +461,9 @@ namespace Htex
             }
         }
 
-        /// <summary>Number of pages of the index.</summary>
+        /// <summary>
+        /// Number of pages in the library's index. Each page lists some of the textures.
+        /// </summary>
         public int PageCount
         {
             get
@@ -426,13 +474,15 @@ namespace Htex
             }
         }
 
-        /// <summary>The entries of a page of the index as a JSON array; see htex_library_page_json.</summary>
+        /// <summary>
+        /// Returns the entries of an index page as a JSON array; see htex_library_page_json.
+        /// </summary>
         public string PageJson(int page)
         {
             return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_page_json(this, (UIntPtr)page, o, c, out l));
         }
 
-        /// <summary>The entry of a texture as JSON.</summary>
+        /// <summary>Returns the index entry of a texture as JSON.</summary>
         public string EntryJson(string name)
         {
             var text = Native.Utf8(name);
@@ -440,7 +490,7 @@ namespace Htex
         }
     }
 
-    /// <summary>A playing texture. One thread at a time may use it.</summary>
+    /// <summary>A texture that is playing. Only one thread at a time may use it.</summary>
     public sealed class Voice : SafeHandle
     {
         internal Voice(Asset asset, VoiceOptions options) : base(IntPtr.Zero, true)
@@ -485,10 +535,15 @@ namespace Htex
             return Native.htex_voice_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
-        /// <summary>The handle of the library; valid until the voice is disposed of, and an error of the calls after that.</summary>
+        /// <summary>
+        /// The voice's handle in libhtex. After the voice is disposed of, calls with this handle
+        /// return an error.
+        /// </summary>
         internal ulong Id { get { return (ulong)(long)handle; } }
 
-        /// <summary>Sets the motion of the finger; spectrum and level glide to it.</summary>
+        /// <summary>
+        /// Sets the motion of the finger. Spectrum and level change gradually to the new motion.
+        /// </summary>
         public void SetMotion(Motion motion)
         {
             motion.Size = Native.MotionSize;
@@ -501,24 +556,30 @@ namespace Htex
             Render(samples, 0, samples.Length);
         }
 
-        /// <summary>Renders the next samples to a part of an array.</summary>
+        /// <summary>Renders the next samples into a part of an array.</summary>
         public void Render(float[] samples, int offset, int count)
         {
             Native.CheckPart(samples, offset, count);
-            // A reference is passed twice as fast as an array; an empty array has none to pass.
+            // Passing a reference is twice as fast as passing an array. An empty array has no
+            // element to refer to.
             if (count > 0)
                 Native.Check(Native.htex_voice_render(this, ref samples[offset], (UIntPtr)count));
             else
                 Native.Check(Native.htex_voice_render(this, ref Native.None, UIntPtr.Zero));
         }
 
-        /// <summary>Renders the next samples to memory. HtexNativeArray.cs has the same for the NativeArray of Unity.</summary>
+        /// <summary>
+        /// Renders the next samples into memory. HtexNativeArray.cs does the same for Unity's
+        /// NativeArray.
+        /// </summary>
         public void Render(IntPtr samples, int count)
         {
             Native.Check(Native.htex_voice_render_to(this, samples, Native.Count(count)));
         }
 
-        /// <summary>Adds the next samples, multiplied by a gain, to a part of an array.</summary>
+        /// <summary>
+        /// Renders the next samples, multiplies them by a gain and adds them to a part of an array.
+        /// </summary>
         public void RenderAdd(float[] samples, int offset, int count, float gain = 1.0f)
         {
             Native.CheckPart(samples, offset, count);
@@ -526,33 +587,39 @@ namespace Htex
                 Native.Check(Native.htex_voice_render_add(this, ref samples[offset], (UIntPtr)count, gain));
         }
 
-        /// <summary>Adds the next samples, multiplied by a gain, to memory.</summary>
+        /// <summary>
+        /// Renders the next samples, multiplies them by a gain and adds them to memory.
+        /// </summary>
         public void RenderAdd(IntPtr samples, int count, float gain = 1.0f)
         {
             Native.Check(Native.htex_voice_render_add_to(this, samples, Native.Count(count), gain));
         }
 
 #if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
-        /// <summary>Renders the next samples to a span.</summary>
+        /// <summary>Renders the next samples into a span.</summary>
         public void Render(Span<float> samples)
         {
             Native.Check(Native.htex_voice_render(this, ref MemoryMarshal.GetReference(samples), (UIntPtr)samples.Length));
         }
 
-        /// <summary>Adds the next samples, multiplied by a gain, to a span.</summary>
+        /// <summary>
+        /// Renders the next samples, multiplies them by a gain and adds them to a span.
+        /// </summary>
         public void RenderAdd(Span<float> samples, float gain = 1.0f)
         {
             Native.Check(Native.htex_voice_render_add(this, ref MemoryMarshal.GetReference(samples), (UIntPtr)samples.Length, gain));
         }
 #endif
 
-        /// <summary>Sets the gain, which changes within 10 ms.</summary>
+        /// <summary>Sets the gain. The voice reaches the new gain within 10 ms.</summary>
         public void SetGain(double gain)
         {
             Native.Check(Native.htex_voice_set_gain(this, gain));
         }
 
-        /// <summary>Whether the voice rests: its samples are 0 until a motion is felt again.</summary>
+        /// <summary>
+        /// Whether the voice is silent: its samples are 0 until the finger slides again.
+        /// </summary>
         public bool IsSilent
         {
             get
@@ -563,7 +630,11 @@ namespace Htex
             }
         }
 
-        /// <summary>What was rendered since the last call. `bands` receives the mean squares, and has one place for each band; or is null.</summary>
+        /// <summary>
+        /// Returns the level and mean frequency of what was rendered since the last call. `bands`
+        /// receives the mean square of the samples in each band. It must have one element per band,
+        /// or be null.
+        /// </summary>
         public Envelope Envelope(double[] bands = null)
         {
             var envelope = new Envelope { Size = Native.EnvelopeSize };
@@ -575,7 +646,7 @@ namespace Htex
         }
 
 #if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
-        /// <summary>What was rendered since the last call, with the bands in a span.</summary>
+        /// <summary>Does the same as Envelope with an array, for a span.</summary>
         public Envelope Envelope(Span<double> bands)
         {
             var envelope = new Envelope { Size = Native.EnvelopeSize };
@@ -584,7 +655,10 @@ namespace Htex
         }
 #endif
 
-        /// <summary>Edges of a number of bands, Hz: one more than bands.</summary>
+        /// <summary>
+        /// Returns the edges of the envelope's bands, Hz: one more than `bands`, which must be the
+        /// voice's number of bands.
+        /// </summary>
         public double[] EnvelopeEdges(int bands)
         {
             var edges = new double[bands + 1];
@@ -592,13 +666,16 @@ namespace Htex
             return edges;
         }
 
-        /// <summary>Makes the voice as it was when it was made, at its own motion or another one. Not for an audio thread.</summary>
+        /// <summary>
+        /// Restarts the voice with the same options, at `motion`, or at the motion in its options
+        /// if `motion` is null. Do not call this in an audio thread.
+        /// </summary>
         public void Reset(Motion? motion = null)
         {
             Native.Check(Native.htex_voice_reset(this, Native.Sized(motion)));
         }
 
-        /// <summary>Id of the model that plays.</summary>
+        /// <summary>The id of the model that plays.</summary>
         public string Model
         {
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_voice_model(this, o, c, out l)); }
@@ -614,7 +691,10 @@ namespace Htex
             Native.Check(Native.htex_voice_render_path(this, motions, Native.Length(motions), samples, (UIntPtr)frames));
         }
 
-        /// <summary>How a motion is played, and whether it is within the recorded conditions.</summary>
+        /// <summary>
+        /// Returns an English text that states how the voice plays a motion, and whether the motion
+        /// lies within the recorded conditions.
+        /// </summary>
         public string Coverage(Motion motion)
         {
             motion.Size = Native.MotionSize;
@@ -622,7 +702,10 @@ namespace Htex
         }
     }
 
-    /// <summary>A playing scene. One thread at a time may use it.</summary>
+    /// <summary>
+    /// A scene that plays: surfaces, a finger's motion over them, and the samples that result. Only
+    /// one thread at a time may use it.
+    /// </summary>
     public sealed class Scene : SafeHandle
     {
         private Scene(ulong id) : base(IntPtr.Zero, true)
@@ -648,7 +731,10 @@ namespace Htex
             }
         }
 
-        /// <summary>Opens a scene in memory, whose files a function returns by their names in the scene; null for one that is absent.</summary>
+        /// <summary>
+        /// Opens a scene file in memory. `files` returns the contents of each file that the scene
+        /// names, or null if there is no such file.
+        /// </summary>
         public static Scene FromBytes(byte[] bytes, Func<string, byte[]> files, double rateHz = 0, OpenOptions options = null)
         {
             using (var open = new Native.Open(options))
@@ -662,13 +748,13 @@ namespace Htex
             }
         }
 
-        /// <summary>The plan as JSON.</summary>
+        /// <summary>The scene's plan as JSON; see htex_scene_plan_json.</summary>
         public string PlanJson
         {
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_scene_plan_json(this, o, c, out l)); }
         }
 
-        /// <summary>Rate of the samples, Hz.</summary>
+        /// <summary>Sample rate, Hz.</summary>
         public double RateHz
         {
             get
@@ -679,20 +765,28 @@ namespace Htex
             }
         }
 
-        /// <summary>Sets position and motion of the finger of a live scene.</summary>
+        /// <summary>
+        /// Sets the position and motion of the finger. This has an effect only in scenes with live
+        /// motion.
+        /// </summary>
         public void SetFinger(Finger finger)
         {
             finger.Size = Native.FingerSize;
             Native.Check(Native.htex_scene_set_finger(this, ref finger));
         }
 
-        /// <summary>Renders the next samples; returns their number, which is smaller at the end.</summary>
+        /// <summary>
+        /// Renders the next samples and returns their number. At the end of the scene, the number
+        /// is smaller than the array's length.
+        /// </summary>
         public int Render(float[] samples)
         {
             return Render(samples, 0, samples.Length);
         }
 
-        /// <summary>Renders the next samples to a part of an array; returns their number.</summary>
+        /// <summary>
+        /// Renders the next samples into a part of an array and returns their number.
+        /// </summary>
         public int Render(float[] samples, int offset, int count)
         {
             Native.CheckPart(samples, offset, count);
@@ -704,7 +798,7 @@ namespace Htex
             return (int)rendered;
         }
 
-        /// <summary>Renders the next samples to memory; returns their number.</summary>
+        /// <summary>Renders the next samples into memory and returns their number.</summary>
         public int Render(IntPtr samples, int count)
         {
             UIntPtr rendered;
@@ -713,7 +807,7 @@ namespace Htex
         }
 
 #if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
-        /// <summary>Renders the next samples to a span; returns their number.</summary>
+        /// <summary>Renders the next samples into a span and returns their number.</summary>
         public int Render(Span<float> samples)
         {
             UIntPtr rendered;
@@ -722,15 +816,19 @@ namespace Htex
         }
 #endif
 
-        /// <summary>Ends the scene with a ramp to silence.</summary>
+        /// <summary>
+        /// Makes the scene end as soon as possible: the next samples fade to silence.
+        /// </summary>
         public void Stop()
         {
             Native.Check(Native.htex_scene_stop(this));
         }
     }
 
-    /// <summary>A device that is open: what plays the samples. One thread at a time may use it. One that is disposed before it is finished
-    /// goes to rest.</summary>
+    /// <summary>
+    /// An open device, which plays samples. Only one thread at a time may use it. If it is disposed
+    /// of before Finish was called, it goes to rest at once.
+    /// </summary>
     public sealed class Device : SafeHandle
     {
         private Device(ulong id) : base(IntPtr.Zero, true)
@@ -745,20 +843,28 @@ namespace Htex
             return Native.htex_device_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
-        /// <summary>The devices of the library as JSON; see htex_device_list_json.</summary>
+        /// <summary>
+        /// The kinds of devices that the library can play on, as JSON; see htex_device_list_json.
+        /// </summary>
         public static string ListJson
         {
             get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_device_list_json(o, c, out l)); }
         }
 
-        /// <summary>Settings, quantity, rates and what becomes of the samples as JSON; see htex_device_info_json.</summary>
+        /// <summary>
+        /// Returns a description of a device as JSON: its settings, the quantity of its samples,
+        /// its sample rates; see htex_device_info_json.
+        /// </summary>
         public static string InfoJson(string name, string settings = "")
         {
             byte[] n = Native.Utf8(name), s = Native.Utf8(settings);
             return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_device_info_json(n, s, o, c, out l));
         }
 
-        /// <summary>Opens a device, such as sdl; settings are lines NAME=VALUE, and a rate of 0 is the device's own.</summary>
+        /// <summary>
+        /// Opens a device by its name, such as sdl. `settings` holds lines of the form NAME=VALUE.
+        /// A `rateHz` of 0 selects the device's own sample rate.
+        /// </summary>
         public static Device Open(string name, string settings = "", double rateHz = 0)
         {
             Native.Handle device;
@@ -766,7 +872,7 @@ namespace Htex
             return new Device(device.Id);
         }
 
-        /// <summary>Rate of the samples, Hz.</summary>
+        /// <summary>Sample rate, Hz.</summary>
         public double RateHz
         {
             get
@@ -777,7 +883,10 @@ namespace Htex
             }
         }
 
-        /// <summary>Gives samples to the device, as many as it takes within the time; returns their number.</summary>
+        /// <summary>
+        /// Passes samples to the device, as many as it takes within `timeoutMs`, and returns their
+        /// number.
+        /// </summary>
         public int Write(float[] samples, int offset, int count, int timeoutMs = 1000)
         {
             Native.CheckPart(samples, offset, count);
@@ -787,7 +896,7 @@ namespace Htex
             return (int)written;
         }
 
-        /// <summary>What the device did so far.</summary>
+        /// <summary>How many samples the device has played, and its other counts.</summary>
         public DeviceCounts Counts
         {
             get
@@ -798,31 +907,34 @@ namespace Htex
             }
         }
 
-        /// <summary>Plays what was written to its end, and keeps the result.</summary>
+        /// <summary>
+        /// Plays all samples that were written, then brings the device to rest; see
+        /// htex_device_finish.
+        /// </summary>
         public void Finish()
         {
             Native.Check(Native.htex_device_finish(this));
         }
     }
 
-    /// <summary>What a device did since it was opened; see htex_device_counts.</summary>
+    /// <summary>What a device has done since it was opened; see htex_device_counts.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct DeviceCounts
     {
         internal uint Size;
-        /// <summary>Samples that it took.</summary>
+        /// <summary>Number of samples written to the device.</summary>
         public ulong FramesWritten;
-        /// <summary>Samples that came out.</summary>
+        /// <summary>Number of samples played.</summary>
         public ulong FramesPlayed;
-        /// <summary>Times it ran dry.</summary>
+        /// <summary>Number of times that the device ran out of samples.</summary>
         public ulong Underruns;
         /// <summary>Time from writing a sample to its output, s.</summary>
         public double LatencyS;
-        /// <summary>Largest magnitude written, in the device's unit.</summary>
+        /// <summary>Largest absolute value written, in the device's unit.</summary>
         public double Peak;
     }
 
-    /// <summary>What concerns the library as a whole.</summary>
+    /// <summary>Functions of the library as a whole: its version, messages and shutdown.</summary>
     public static class LibHtex
     {
         private static readonly Native.Log Passing = Pass;
@@ -830,7 +942,8 @@ namespace Htex
 
         static LibHtex()
         {
-            // The editor of Unity unloads this code when scripts change, and the library stays: it must not call what is gone.
+            // Unity's editor unloads this code when scripts change, but libhtex stays loaded. It
+            // must not call a function that was unloaded.
             AppDomain.CurrentDomain.DomainUnload += (sender, unloaded) => Forget();
         }
 
@@ -843,20 +956,26 @@ namespace Htex
         /// <summary>Version of the library.</summary>
         public static string Version { get { return Native.FromUtf8(Native.htex_version()); } }
 
-        /// <summary>What a status means.</summary>
+        /// <summary>Returns the meaning of a status, in English.</summary>
         public static string Text(Status status)
         {
             return Native.FromUtf8(Native.htex_status_text(status));
         }
 
-        /// <summary>Sets the function that receives messages; null: none. It must not call the library.</summary>
+        /// <summary>
+        /// Sets the function that receives messages; null for none. The function must not call
+        /// libhtex.
+        /// </summary>
         public static void SetLog(Action<LogLevel, string> log)
         {
             receiver = log;
             Native.Check(Native.htex_set_log(log == null ? null : Passing, IntPtr.Zero));
         }
 
-        /// <summary>Frees all that the library has; no other call may run. Objects that are left are dead.</summary>
+        /// <summary>
+        /// Frees everything that the library holds. No other call may run at the same time.
+        /// Remaining objects can no longer be used.
+        /// </summary>
         public static void Shutdown()
         {
             Native.Check(Native.htex_shutdown());
@@ -873,12 +992,15 @@ namespace Htex
             }
             catch (Exception)
             {
-                // An exception cannot pass through the library; the message is lost.
+                // Exceptions must not pass through libhtex, so this one is dropped.
             }
         }
     }
 
-    /// <summary>A file that the program reads, held until the library has closed it.</summary>
+    /// <summary>
+    /// A file that libhtex reads through a function of the program. The object stays alive until
+    /// the library closes the file.
+    /// </summary>
     internal sealed class FileReader
     {
         private static readonly Native.ReadFile Reading = Read;
@@ -907,7 +1029,7 @@ namespace Htex
 
         private static void Fill(Stream stream, long offset, byte[] buffer, int count)
         {
-            // It has one position for all threads.
+            // A stream has one position, which all threads share.
             lock (stream)
             {
                 stream.Position = offset;
@@ -921,7 +1043,10 @@ namespace Htex
             }
         }
 
-        /// <summary>The struct for the library, which closes it once.</summary>
+        /// <summary>
+        /// Returns the struct for the library, and keeps this object alive until the library closes
+        /// the file, which it does once.
+        /// </summary>
         internal Native.ReaderC Held()
         {
             return new Native.ReaderC
@@ -946,7 +1071,7 @@ namespace Htex
             }
             catch (Exception)
             {
-                // An exception cannot pass through the library: the file cannot be read.
+                // Exceptions must not pass through libhtex. It treats the file as unreadable.
                 return 1;
             }
         }
@@ -964,12 +1089,13 @@ namespace Htex
             }
             catch (Exception)
             {
-                // Nor can this one; the file is not read any more.
+                // This exception must not pass through libhtex either. The file is not read any
+                // more.
             }
         }
     }
 
-    /// <summary>The files of a scene, which a function returns.</summary>
+    /// <summary>The files of a scene, which a function of the program returns.</summary>
     internal sealed class SceneFiles : IDisposable
     {
         private static readonly Native.OpenFile Opening = Open;
@@ -1010,7 +1136,7 @@ namespace Htex
             }
             catch (Exception)
             {
-                // An exception cannot pass through the library: the file counts as absent.
+                // Exceptions must not pass through libhtex. It treats the file as missing.
                 bytes = null;
             }
             if (bytes == null)
@@ -1020,7 +1146,9 @@ namespace Htex
         }
     }
 
-    /// <summary>The functions of htex.h. An object that is passed is held during the call.</summary>
+    /// <summary>
+    /// The functions of htex.h. Each call keeps the objects that are passed to it alive.
+    /// </summary>
     internal static class Native
     {
 #if UNITY_IOS && !UNITY_EDITOR
@@ -1029,7 +1157,7 @@ namespace Htex
         internal const string Library = "htex";
 #endif
 
-        /// <summary>What an empty array refers to; never written.</summary>
+        /// <summary>The address that is passed for an empty array; never written.</summary>
         internal static float None;
         internal static double NoBand;
 
@@ -1040,7 +1168,9 @@ namespace Htex
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate void Log(LogLevel level, IntPtr message, IntPtr context);
 
-        /// <summary>A motion as an array, with its size; null for none.</summary>
+        /// <summary>
+        /// Returns an array with one motion whose size field is set, or null for no motion.
+        /// </summary>
         internal static Motion[] Sized(Motion? motion)
         {
             if (!motion.HasValue)
@@ -1050,8 +1180,11 @@ namespace Htex
             return motions;
         }
 
-        /// <summary>The address of a static function. Its delegate must live as long as native code has the address. The overload for a
-        /// delegate of any type needs no generic code, which a compiler ahead of time could miss.</summary>
+        /// <summary>
+        /// Returns the address of a static function. The delegate must live as long as native code
+        /// uses the address. The parameter is a plain Delegate, because an ahead-of-time compiler
+        /// could miss generic code.
+        /// </summary>
         internal static IntPtr Function(Delegate function)
         {
             return Marshal.GetFunctionPointerForDelegate(function);
@@ -1138,7 +1271,10 @@ namespace Htex
             internal double RateHz;
         }
 
-        /// <summary>Options of opening; all that they point to stays in place until they are disposed of.</summary>
+        /// <summary>
+        /// Options for opening, in their C form. The memory that they point to stays in place until
+        /// this object is disposed of.
+        /// </summary>
         internal sealed class Open : IDisposable
         {
             internal OpenOptionsC Options;

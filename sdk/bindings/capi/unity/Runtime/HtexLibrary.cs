@@ -1,25 +1,30 @@
-// A .htexlib file as an asset of Unity.
+// A .htexlib file as a Unity asset.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using UnityEngine;
 
 namespace Htex
 {
-    /// <summary>A library of textures in a project: what the importer of .htexlib files makes.</summary>
+    /// <summary>
+    /// A library of textures in a Unity project. The importer makes it from a .htexlib file.
+    /// </summary>
     public sealed class HtexLibrary : ScriptableObject
     {
         [SerializeField, HideInInspector] private byte[] bytes = new byte[0];
         [SerializeField] private string title = "";
         [SerializeField] private long count;
 
-        /// <summary>The file. Do not change it.</summary>
+        /// <summary>The bytes of the .htexlib file. Do not change them.</summary>
         public byte[] Bytes { get { return bytes; } }
-        /// <summary>The name that the file states.</summary>
+        /// <summary>The library's name, which the file states.</summary>
         public string Title { get { return title; } }
         /// <summary>Number of textures.</summary>
         public long Count { get { return count; } }
 
-        /// <summary>Makes it of a .htexlib file; throws HtexException with the text of libhtex for one that cannot be opened.</summary>
+        /// <summary>
+        /// Makes the object from the bytes of a .htexlib file. If libhtex cannot open them, this
+        /// throws HtexException with its error text.
+        /// </summary>
         public static HtexLibrary FromBytes(byte[] bytes)
         {
             using (var opened = Library.FromBytes(bytes))
@@ -33,7 +38,9 @@ namespace Htex
             }
         }
 
-        /// <summary>Opens it; textures are read one by one.</summary>
+        /// <summary>
+        /// Opens the library. Its textures are read one at a time, when they are opened.
+        /// </summary>
         public Library Open()
         {
             return Library.FromBytes(bytes);

@@ -1,4 +1,4 @@
-// Samples to the NativeArrays of Unity, without a copy.
+// Renders samples into Unity's NativeArrays without copying them.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #if UNITY_2021_2_OR_NEWER
@@ -8,7 +8,7 @@ using Unity.Collections.LowLevel.Unsafe;
 
 namespace Htex
 {
-    /// <summary>Calls that write to a NativeArray.</summary>
+    /// <summary>Calls that render samples into a NativeArray.</summary>
     public static class HtexNativeArray
     {
         /// <summary>Renders the next samples, in the asset's unit.</summary>
@@ -17,13 +17,18 @@ namespace Htex
             voice.Render(Address(samples), samples.Length);
         }
 
-        /// <summary>Adds the next samples, multiplied by a gain.</summary>
+        /// <summary>
+        /// Renders the next samples, multiplies them by a gain and adds them to the array.
+        /// </summary>
         public static void RenderAdd(this Voice voice, NativeArray<float> samples, float gain = 1.0f)
         {
             voice.RenderAdd(Address(samples), samples.Length, gain);
         }
 
-        /// <summary>Renders the next samples of a scene; returns their number, which is smaller at the end.</summary>
+        /// <summary>
+        /// Renders the next samples of a scene and returns their number. At the end of the scene,
+        /// the number is smaller than the array's length.
+        /// </summary>
         public static int Render(this Scene scene, NativeArray<float> samples)
         {
             return scene.Render(Address(samples), samples.Length);

@@ -1,4 +1,5 @@
-// Voices in jobs of Unity, with and without Burst: only numbers and pointers are passed to the library.
+// Renders voices in Unity jobs, with and without Burst. The calls pass only numbers and pointers to
+// libhtex.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #if UNITY_2021_2_OR_NEWER
@@ -11,8 +12,9 @@ using Unity.Jobs;
 namespace Htex
 {
     /// <summary>
-    /// A voice in a job. It does not hold the Voice: dispose of that after the job is complete. A call with one that is disposed of returns
-    /// BadHandle, one during another call Busy.
+    /// Refers to a Voice in a Unity job. It does not keep the Voice alive, so dispose of the Voice
+    /// only after the job is complete. If the Voice was disposed of, calls return BadHandle. If
+    /// another call is using the Voice, they return Busy.
     /// </summary>
     public struct HtexVoice
     {
@@ -23,7 +25,9 @@ namespace Htex
             id = voice.Id;
         }
 
-        /// <summary>Sets the motion of the finger; spectrum and level glide to it.</summary>
+        /// <summary>
+        /// Sets the motion of the finger. Spectrum and level change gradually to the new motion.
+        /// </summary>
         public unsafe Status SetMotion(Motion motion)
         {
             motion.Size = (uint)sizeof(Motion);
@@ -36,19 +40,25 @@ namespace Htex
             return (Status)htex_voice_render(id, (float*)NativeArrayUnsafeUtility.GetUnsafePtr(samples), (UIntPtr)(uint)samples.Length);
         }
 
-        /// <summary>Adds the next samples, multiplied by a gain.</summary>
+        /// <summary>
+        /// Renders the next samples, multiplies them by a gain and adds them to the array.
+        /// </summary>
         public unsafe Status RenderAdd(NativeArray<float> samples, float gain)
         {
             return (Status)htex_voice_render_add(id, (float*)NativeArrayUnsafeUtility.GetUnsafePtr(samples), (UIntPtr)(uint)samples.Length, gain);
         }
 
-        // Burst passes neither objects nor enums, and structs only by pointer; a handle of htex.h has one field, and is passed as that.
+        // Burst can pass neither objects nor enums, and structs only by pointer. A handle of htex.h
+        // has a single field, so these functions pass that field.
         [DllImport(Native.Library)] private static extern unsafe int htex_voice_set_motion(ulong voice, Motion* motion);
         [DllImport(Native.Library)] private static extern unsafe int htex_voice_render(ulong voice, float* samples, UIntPtr frames);
         [DllImport(Native.Library)] private static extern unsafe int htex_voice_render_add(ulong voice, float* samples, UIntPtr frames, float gain);
     }
 
-    /// <summary>Renders a block of a voice at a motion. Burst compiles it if its package is there.</summary>
+    /// <summary>
+    /// Sets the motion of a voice and renders one block. Burst compiles the job if the Burst
+    /// package is installed.
+    /// </summary>
 #if HTEX_BURST
     [Unity.Burst.BurstCompile]
 #endif
@@ -58,7 +68,7 @@ namespace Htex
         public Motion Motion;
         /// <summary>Receives the samples, in the asset's unit.</summary>
         [WriteOnly] public NativeArray<float> Samples;
-        /// <summary>Receives the status as its one number; 0 is Ok.</summary>
+        /// <summary>Receives the status as its only element; 0 is Ok.</summary>
         [WriteOnly] public NativeArray<int> Result;
 
         public void Execute()

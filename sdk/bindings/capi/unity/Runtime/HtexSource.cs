@@ -1,4 +1,5 @@
-// A texture as a Unity component, beside an AudioSource whose output drives an actuator or a loudspeaker.
+// A Unity component that plays a texture through an AudioSource. The output of the AudioSource
+// drives an actuator or a loudspeaker.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
@@ -8,23 +9,37 @@ using UnityEngine;
 
 namespace Htex
 {
-    /// <summary>Plays a texture at the speed and force that scripts set, in the audio thread.</summary>
+    /// <summary>
+    /// Unity component that plays a texture through an AudioSource, at the speed and force that
+    /// scripts set. It renders in the audio thread.
+    /// </summary>
     [RequireComponent(typeof(AudioSource))]
     public sealed class HtexSource : MonoBehaviour
     {
-        /// <summary>The texture; if it is null, the file of Asset is played.</summary>
+        /// <summary>
+        /// The texture to play. If it is null, the file that Asset names is played.
+        /// </summary>
         public HtexTexture Texture;
-        /// <summary>A path from the folder StreamingAssets, for files that are no assets of the project. Android has no paths in it.</summary>
+        /// <summary>
+        /// Path of a .htex file, relative to the folder StreamingAssets, for files that are not
+        /// imported into the project. This does not work on Android, where StreamingAssets has no
+        /// file paths.
+        /// </summary>
         public string Asset = "texture.htex";
-        /// <summary>The model of the representation; empty: the one of least error.</summary>
+        /// <summary>
+        /// Id or short name of the model whose representation plays. If it is empty, the
+        /// representation with the smallest error plays.
+        /// </summary>
         public string Model = "";
         /// <summary>Seed of the noise.</summary>
         public int Seed;
-        /// <summary>Factor from the asset's unit to full scale.</summary>
+        /// <summary>
+        /// Factor that converts samples in the asset's unit to fractions of full scale.
+        /// </summary>
         public float Gain = 10.0f;
-        /// <summary>Scanning speed, mm/s. Set it from any script.</summary>
+        /// <summary>Scanning speed, mm/s. Scripts may set it at any time.</summary>
         public float SpeedMmS;
-        /// <summary>Normal force, N. Set it from any script.</summary>
+        /// <summary>Normal force, N. Scripts may set it at any time.</summary>
         public float ForceN = 0.4f;
 
         private Asset asset;
@@ -76,7 +91,10 @@ namespace Htex
             enabled = false;
         }
 
-        /// <summary>The audio thread may render at this moment: its call holds the voice, which is freed after it.</summary>
+        /// <summary>
+        /// Frees the voice. If the audio thread is rendering at this moment, the voice is freed
+        /// when that call returns.
+        /// </summary>
         private void OnDisable()
         {
             Voice playing = voice;
@@ -97,8 +115,10 @@ namespace Htex
             Debug.LogError("htex: " + text);
         }
 
-        /// <summary>Called by Unity in the audio thread. It allocates only when the length of the blocks changes, and when it fails. Invalid
-        /// speeds and forces count as 0.</summary>
+        /// <summary>
+        /// Unity calls this in the audio thread. It allocates memory only when the block length
+        /// changes and when it fails. Invalid speeds and forces count as 0.
+        /// </summary>
         private void OnAudioFilterRead(float[] data, int channels)
         {
             Voice playing = voice;
@@ -114,7 +134,7 @@ namespace Htex
             }
             catch (ObjectDisposedException)
             {
-                // Disabled since this block began.
+                // The component was disabled after this block began.
                 return;
             }
             catch (Exception error)

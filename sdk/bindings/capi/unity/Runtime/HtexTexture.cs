@@ -1,4 +1,5 @@
-// A .htex file as an asset of Unity. It holds the bytes, so it is played on systems that have no file for it, such as Android.
+// A .htex file as a Unity asset. The asset holds the bytes, so it also plays on systems where
+// StreamingAssets are not files, such as Android.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
@@ -6,7 +7,9 @@ using UnityEngine;
 
 namespace Htex
 {
-    /// <summary>A texture of touch in a project: what the importer of .htex files makes.</summary>
+    /// <summary>
+    /// A texture of touch in a Unity project. The importer makes it from a .htex file.
+    /// </summary>
     public sealed class HtexTexture : ScriptableObject
     {
         [SerializeField, HideInInspector] private byte[] bytes = new byte[0];
@@ -16,20 +19,23 @@ namespace Htex
         [SerializeField] private string[] models = new string[0];
         [SerializeField] private Condition[] conditions = new Condition[0];
 
-        /// <summary>The file. Do not change it.</summary>
+        /// <summary>The bytes of the .htex file. Do not change them.</summary>
         public byte[] Bytes { get { return bytes; } }
-        /// <summary>The name that the file states.</summary>
+        /// <summary>The texture's name, which the file states.</summary>
         public string Title { get { return title; } }
-        /// <summary>What was recorded, such as lateral_force.</summary>
+        /// <summary>The physical quantity that was recorded, such as lateral_force.</summary>
         public string Quantity { get { return quantity; } }
         /// <summary>Unit of the samples.</summary>
         public string Unit { get { return unit; } }
-        /// <summary>Ids of the models of the representations.</summary>
+        /// <summary>The model id of each representation.</summary>
         public string[] Models { get { return models; } }
         /// <summary>The recorded conditions.</summary>
         public Condition[] Conditions { get { return conditions; } }
 
-        /// <summary>Makes it of a .htex file; throws HtexException with the text of libhtex for one that cannot be opened.</summary>
+        /// <summary>
+        /// Makes the object from the bytes of a .htex file. If libhtex cannot open them, this
+        /// throws HtexException with its error text.
+        /// </summary>
         public static HtexTexture FromBytes(byte[] bytes)
         {
             using (var asset = Asset.FromBytes(bytes))
@@ -46,13 +52,13 @@ namespace Htex
             }
         }
 
-        /// <summary>Opens it. Several voices may play one asset.</summary>
+        /// <summary>Opens the texture as an asset. Several voices may play one asset.</summary>
         public Asset Open(OpenOptions options = null)
         {
             return Asset.FromBytes(bytes, options);
         }
 
-        /// <summary>The part of a manifest that no call of libhtex returns.</summary>
+        /// <summary>The field of the manifest that no function of libhtex returns.</summary>
         [Serializable]
         private sealed class Manifest
         {

@@ -1,6 +1,7 @@
-"""From recordings to spectra, textures and tables.
+"""Compute spectra, textures and tables from recordings.
 
-A fitted texture is read back from its bytes, so that it is exactly what its file contains.
+``fit`` reads the fitted texture back from the bytes of its file. So the returned texture has
+exactly the digits that the file stores.
 """
 
 from __future__ import annotations
@@ -27,10 +28,11 @@ def process(recording: Recording, **settings: Unpack[Reading]) -> Processed:
     """Compute the texture spectrum of a recording, as ``htex process`` does.
 
     ``recording`` is a file (CSV, WAV, FLAC, NPY, MATLAB, HDF5, TDMS, Parquet, Arrow), the bytes of
-    a file, or an array. An array has one row per sample: one column is the lateral force, two are
-    its axes, three are its axes and the normal force. It needs ``rate_hz``. The columns of a data
-    frame or a mapping are recognised by name, as in a CSV file. A recording from ``htex record`` or
-    from a study is read as the JSON file next to it specifies; you may also pass that JSON file.
+    a file, or an array. An array has one row per sample and needs ``rate_hz``. One column is the
+    lateral force. Two columns are the x and y components of the lateral force. A third column is
+    the normal force. A data frame or a mapping may also be given; its columns are recognised by
+    name, as in a CSV file. For a recording from ``htex record`` or a study, the JSON file next to
+    it specifies how the recording is read. You may also pass this JSON file itself.
     """
     with _reading("process", settings) as (reading, _):
         found = _htex.process(source(recording), reading)
@@ -57,12 +59,12 @@ def fit(
 
     ``recordings`` is one recording or a list of them, in the forms that ``process`` accepts.
     ``conditions`` are pairs of speed (mm/s) and force (N): one for each recording, or one for all.
-    ``models`` are short names or ids, or ``"all"``. ``options`` are options of the models: ``{"ar":
-    {"order": 6}}``. ``plugins`` are files of further models, or folders of such files;
-    ``installed`` adds the user's models. ``name`` is the name of the texture; the default is the
-    name of the first file. ``grid`` groups recordings of a free motion into conditions: ``"auto"``,
-    or the grid lines for one or both axes, ``{"speed_mm_s": [40, 80, 160], "force_n": [0.3,
-    0.6]}``.
+    ``models`` are short names or ids, or ``"all"``. ``options`` holds the options of each model,
+    such as ``{"ar": {"order": 6}}``. ``plugins`` are the files of further models, or folders with
+    such files. ``installed`` also uses the models that the user has installed. ``name`` is the name
+    of the texture; the default is the name of the first file. ``grid`` divides recordings of a free
+    motion into conditions. It is ``"auto"``, or the grid lines for one or both axes, such as
+    ``{"speed_mm_s": [40, 80, 160], "force_n": [0.3, 0.6]}``.
     """
     files = sources(recordings)
     with _reading("fit", settings, FitSettings, Metadata) as (reading, (fitting, metadata)):
@@ -86,7 +88,7 @@ def fit(
 
 
 def _grid(grid: str | Mapping[Any, Iterable[float]] | None) -> list[str]:
-    """Return the lines of a grid in the form that the command takes; an empty list without a grid.
+    """Return the lines of a grid as the command expects them, or an empty list without a grid.
     """
     if grid is None:
         return []
@@ -109,14 +111,15 @@ def tradeoff(
     journal: str | os.PathLike[str] | None = None,
     **settings: Unpack[Reading],
 ) -> Tradeoff:
-    """Measure accuracy against bytes and time over models and their options, as ``htex tradeoff``
-    does.
+    """Measure the accuracy of models against their size in bytes and their computing time, for many
+    values of their options, as ``htex tradeoff`` does.
 
-    ``error`` selects the error for fronts and knees: ``held_out``, where 1 is as good as a second
-    recording, or an error against the fitted data, in decibels. The default is ``held_out``, or
-    ``third_octave`` if a recording is too short to hold any part of it out. ``journal`` is a file
-    from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are as in
-    ``fit``.
+    ``error`` selects the error that determines the fronts and knees. ``"held_out"`` is the error on
+    parts of the recording that were not fitted; at 1, the model is as good as a second recording.
+    The other errors compare the model with the fitted data, in decibels. The default is
+    ``"held_out"``, or ``"third_octave"`` if a recording is too short to hold out a part.
+    ``journal`` is a file that stores the results so far: with the same file, an interrupted sweep
+    continues where it stopped. ``models``, ``plugins`` and ``installed`` are as in ``fit``.
     """
     request = {
         "models": model_list(models),
@@ -141,12 +144,12 @@ def tradeoff(
 
 @keywords(Reading)
 def compare(recording: Recording, other: _htex.Texture | Recording, **settings: Unpack[Reading]) -> Comparison:
-    """Measure each representation of a texture, or another recording, against a recording, as
+    """Compare a recording with each representation of a texture, or with another recording, as
     ``htex compare`` does.
 
-    ``other`` is a texture, an ``.htex`` file, or a recording in a form that ``process`` accepts. A
-    texture plays at the recording's speed and force if both are known; otherwise at its default
-    condition (the first, or the strongest if the first is silent).
+    ``other`` is a texture, an ``.htex`` file, or a recording in a form that ``process`` accepts.
+    The texture plays at the recording's speed and force if both are known. Otherwise it plays at
+    its default condition: the first one, or the strongest one if the first is silent.
     """
     if isinstance(other, (str, os.PathLike)) and os.fspath(other).lower().endswith(".htex"):
         other = _htex.open(other)
@@ -165,10 +168,10 @@ def agreement(
     frequency_hz: npt.ArrayLike | None = None,
     band_hz: tuple[float, float] | None = None,
 ) -> Agreement:
-    """Compare magnitudes with a reference at the same frequencies.
+    """Compare the magnitudes of a spectrum with those of a reference at the same frequencies.
 
-    If the reference is a ``Spectrum``, it states frequencies and band. Otherwise they are 20 to
-    1000 Hz in steps of 5 Hz.
+    If the reference is a ``Spectrum``, its frequencies and band are the defaults. Otherwise the
+    default is 20 to 1000 Hz in steps of 5 Hz.
     """
     if isinstance(reference, Spectrum):
         frequency_hz = reference.frequency_hz if frequency_hz is None else frequency_hz
@@ -191,9 +194,10 @@ def agreement(
 
 @contextlib.contextmanager
 def _reading(function: str, settings: Mapping[str, object], *others: type) -> Iterator[tuple[tuple[str, str], list[dict[str, Any]]]]:
-    """Return the reading settings for the extension, and the other settings.
+    """Return the settings for reading recordings, in the form that the extension module takes, and
+    the other settings.
 
-    A response is converted to its file.
+    A ``Response`` is written to a temporary CSV file.
     """
     reading, *rest, besides = split(function, settings, ReadingSettings, *others, Reading)
     response = besides.pop("response", None)
@@ -208,7 +212,7 @@ def _reading(function: str, settings: Mapping[str, object], *others: type) -> It
 
 
 def model_list(models: str | Iterable[str]) -> list[str]:
-    """Return the names of models. No names stand for all models."""
+    """Return the names of models as a list. An empty list stands for all models."""
     names = [models] if isinstance(models, str) else list(models)
     if not names:
         raise _errors.OptionError('no models; name at least one, or give "all"')

@@ -22,26 +22,28 @@ def build(
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe, as ``htex build`` does.
 
-    Fitted results stay in ``output``: an interrupted build continues where it stopped, and a
-    repeated build fits only what has changed.
+    Fitted results stay in ``output``. So an interrupted build continues where it stopped, and a
+    repeated build fits only the textures that have changed.
 
     Args:
         recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs.
-        output: A folder for the results, or a URI (``s3://``, ``gs://``, ``az://``). For a URI,
-            results are made in ``work`` and copied when complete.
+        output: A folder for the results, or a URI (``s3://``, ``gs://``, ``az://``). For a URI, the
+            results are first made in ``work`` and copied to the URI when they are complete.
         keep_going: Leave out a texture that cannot be made instead of raising.
-        work: The folder in which results for a URI are made. Default: one in the user's cache.
-        plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with
-            all your rights. A recipe can name only WASM modules.
-        no_removals: Raise and change nothing if the library would lose textures, e.g. because a
-            folder of recordings was moved.
+        work: The folder in which results for a URI are first made. The default is a folder in the
+            user's cache.
+        plugins: Files of further models to fit. WASM modules run in a sandbox; native libraries run
+            with all your rights. A recipe itself can name only WASM modules.
+        no_removals: If the library would lose textures, e.g. because a folder of recordings was
+            moved, raise an error and change nothing.
 
     Returns:
         The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``;
-        ``report["removed"]`` if textures of the previous library are gone.
+        and ``report["removed"]`` if the new library lacks textures of the previous one.
 
     Raises:
-        BuildError: The recipe is wrong, a texture cannot be made, or the library would lose textures.
+        BuildError: The recipe is invalid, a texture cannot be made, or the library would lose
+            textures.
         OSError: A file cannot be read or written.
     """
     named = [os.fspath(plugin) for plugin in plugins]

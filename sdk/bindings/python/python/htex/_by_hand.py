@@ -1,4 +1,5 @@
-"""Textures without recordings: from parameters, between two other textures, or with other metadata.
+"""Make textures without recordings: from parameters, between two other textures, or with other
+metadata.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ def make(
 ) -> _htex.Texture:
     """Make a texture from a model's parameters, as ``htex make`` does.
 
-    It states that it was made by hand.
+    The texture states that it was made by hand.
 
-    ``parameters`` are the model's parameters by name (``htex.models()`` lists them with units and
-    ranges). A list needs all its values. ``level_rms`` is the RMS of the texture in the unit of
-    ``quantity`` (newtons). ``at`` is the speed (mm/s) and the force (N) for which these parameters
-    hold.
+    ``parameters`` holds the model's parameters by name; ``htex.models()`` lists them with units and
+    ranges. If a parameter is a list, give all its values. ``level_rms`` is the RMS of the texture
+    in the unit of ``quantity``, which is newtons for a force. ``at`` is the speed (mm/s) and the
+    force (N) for which these parameters hold.
     """
     (given,) = split("make", metadata, Metadata)
     values = {name: _values(value) for name, value in parameters.items()}
@@ -52,11 +53,11 @@ def make(
 
 @keywords(Metadata)
 def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Metadata]) -> _htex.Texture:
-    """Make a texture between two others, as ``htex mix`` does.
+    """Make a texture between the textures ``a`` and ``b``, as ``htex mix`` does.
 
     ``weight`` is the share of ``b``, 0 to 1.
 
-    Each model that describes both textures interpolates between their parameters, as it does
+    Each model that both textures have interpolates between their parameters, in the same way as
     between the conditions of one texture. The result states from which textures it was mixed.
     """
     (given,) = split("mix", metadata, Metadata)
@@ -65,10 +66,10 @@ def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Me
 
 @keywords(Metadata)
 def edit(texture: _htex.Texture, **metadata: Unpack[Metadata]) -> _htex.Texture:
-    """Return a texture with other metadata, without a new fit, as ``htex edit`` does.
+    """Return the texture with other metadata, without fitting it again, as ``htex edit`` does.
 
-    Metadata that is not given is kept. An empty text removes an entry, and ``tags`` replaces all
-    tags.
+    Metadata that you do not give stays as it is. An empty text removes an entry. ``tags`` replaces
+    all tags.
     """
     (given,) = split("edit", metadata, Metadata)
     return _htex.edit(texture, as_json(given))

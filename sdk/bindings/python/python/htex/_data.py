@@ -25,9 +25,11 @@ class Condition:
     force_n: float | None = None
     """Normal force, newtons."""
     repeatability_rms_db: float | None = None
-    """RMS over nine bands of the difference between odd and even blocks of time of the recording, over √2, decibels."""
+    """How well the recording repeats itself, decibels: the difference between its odd and even time
+    blocks, as an RMS over nine frequency bands, divided by √2."""
     segments: int | None = None
-    """Number of averaged segments, if the asset states it; 0 for a computed condition."""
+    """Number of averaged segments; 0 for a computed condition. ``None`` if the asset does not state
+    it."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +37,11 @@ class LibraryEntry:
     """What a library states about a texture."""
 
     name: str
-    """Name in the library, with ``/`` between its parts."""
+    """Name in the library. ``/`` separates the parts of a name."""
     tags: tuple[str, ...]
     """Search terms."""
     models: tuple[str, ...]
-    """Ids of the models of its representations."""
+    """The model id of each representation."""
     speed_mm_s: tuple[float, float] | None
     """Lowest and highest recorded speed, mm/s; ``None`` if unknown."""
     force_n: tuple[float, float] | None
@@ -47,7 +49,8 @@ class LibraryEntry:
     contact: str
     """What slid over the surface: ``finger``, ``tool`` or ``unknown``."""
     law: dict[str, Exponent]
-    """How frequencies and level follow unrecorded motions: ``Texture.law`` without estimates."""
+    """How frequencies and level change at motions outside the recorded conditions: as
+    ``Texture.law``, but without estimates and standard errors."""
     bytes: int
     """Size of the texture's file, bytes."""
     blake3: str
@@ -56,7 +59,7 @@ class LibraryEntry:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """A texture spectrum. A sinusoid of amplitude A on the grid has magnitude A."""
+    """A texture spectrum. A sinusoid of amplitude A, at one of the frequencies, has magnitude A."""
 
     frequency_hz: npt.NDArray[np.float64]
     """Frequencies, hertz."""
@@ -76,45 +79,51 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Reach:
-    """How a speed or force relates to the recorded values."""
+    """How the speed or force of a motion relates to the recorded values."""
 
     kind: Literal["inside", "unknown", "followed", "outside"]
-    """Where the value lies. Outside the recorded range, the texture follows its law."""
+    """Where the value lies: ``inside`` or ``outside`` the recorded range. ``followed``: the model
+    itself follows the motion. ``unknown``: the asset does not state the recorded values, so the
+    speed or force has no effect."""
     asked: float | None = None
-    """The requested value."""
+    """The speed or force of the motion; ``None`` unless it is outside the recorded range."""
     recorded: float | None = None
-    """The nearest recorded value."""
+    """The nearest recorded value; ``None`` unless the motion is outside the recorded range."""
 
 
 @dataclass(frozen=True)
 class Exponent:
-    """An exponent of a texture's law, and its source."""
+    """An exponent of a texture's law, which states how frequencies and level change with speed and
+    force."""
 
     exponent: float
-    """The exponent used for playback."""
+    """The exponent that is used for playback."""
     source: Literal["measured", "given", "assumed"]
-    """Where it comes from."""
+    """Where the exponent comes from."""
     estimate: float | None = None
-    """The measurement, before its error pulled it towards the assumed exponent."""
+    """The exponent as measured. ``exponent`` lies closer to the assumed exponent, the more so the
+    larger the standard error is."""
     standard_error: float | None = None
     """Standard error of the measurement."""
 
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """What a voice played since the last call, for devices that are driven by level and frequency.
+    """Level and mean frequency of what a voice played since the last call, for devices that receive
+    a level and a frequency instead of samples.
 
-    The level is exact. The other numbers are computed from windows that lag by some 20 ms.
+    The level is exact. The mean frequency and the bands are computed from time windows, so they are
+    late by some 20 ms.
     """
 
     level_rms: float
-    """RMS of the samples, in the unit; 0 if there are none."""
+    """RMS of the samples, in the texture's unit; 0 if there are none."""
     centroid_hz: float
-    """Mean frequency, weighted by power, hertz; 0 for silence."""
+    """Mean frequency of the spectrum, weighted by power, hertz; 0 for silence."""
     frames: int
-    """Number of the samples."""
+    """Number of samples since the last call."""
     bands: npt.NDArray[np.float64]
-    """Mean square in each band, in the squared unit."""
+    """Mean square of the samples in each band, in the texture's unit squared."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +135,7 @@ class DeviceStatus:
     frames_played: int
     """Number of samples played."""
     underruns: int
-    """Number of times the device ran out of samples."""
+    """Number of times that the device ran out of samples."""
     latency_s: float
     """Time from writing a sample to its output, seconds."""
     peak: float
@@ -138,13 +147,15 @@ class Coverage:
     """How a motion relates to the recorded conditions, and how a voice plays it."""
 
     inside: bool
-    """Whether the texture is played as recorded or interpolated between recordings."""
+    """Whether the motion lies within the recorded conditions. The texture then plays as recorded,
+    or interpolated between recorded conditions."""
     slides: bool
     """Whether the voice is audible."""
     excess: float
-    """Relative difference between the motion and the one that is actually played."""
+    """Relative difference between the requested motion and the motion that is actually played."""
     description: str
-    """One sentence; empty if nothing differs from the recording."""
+    """One sentence that states how playback differs from the recording; empty if it does not
+    differ."""
     frequency_factor: float
     """Factor that multiplies all frequencies."""
     level_factor: float
@@ -168,21 +179,23 @@ class Processed:
     segments: int
     """Number of averaged segments."""
     from_sweeps: bool
-    """Whether the segments are sweeps; if not, they are evenly spaced windows."""
+    """Whether the segments are the sweeps of the finger. If not, they are evenly spaced time
+    windows."""
     read_s: list[tuple[float, float]]
-    """The segments that were read, seconds."""
+    """Start and end of each segment that was read, seconds."""
     speed_spread_mm_s: tuple[float, float] | None
-    """Lowest and highest speed over the segments, mm/s."""
+    """Lowest and highest speed of the segments, mm/s."""
     force_spread_n: tuple[float, float] | None
-    """Lowest and highest normal force over the segments, newtons."""
+    """Lowest and highest normal force of the segments, newtons."""
     simulated: bool
-    """Whether the file says that it comes from a simulator."""
+    """Whether the file states that it was simulated."""
     findings: list[dict[str, Any]]
-    """Findings, with stable codes."""
+    """Problems that were found in the recording. Each has a code that does not change between
+    versions."""
     warnings: list[str]
     """Warnings, as sentences."""
     notes: list[str]
-    """Notes, as sentences."""
+    """Notes about the recording, as sentences."""
 
     def __repr__(self) -> str:
         return f"<htex.Processed: {self.segments} segments at {self.rate_hz:g} Hz, {self.spectrum!r}>"
@@ -197,7 +210,7 @@ class Imported:
     warnings: list[str]
     """Warnings about the file, as sentences."""
     notes: list[str]
-    """Notes about the file, such as that a licence is missing."""
+    """Notes about the file, e.g. that a licence is missing."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -211,20 +224,21 @@ class Fit:
     fit_ms: list[float]
     """Time spent on fitting each model, milliseconds."""
     skipped: list[tuple[str, str]]
-    """Models that could not be fitted, with reasons."""
+    """Models that could not be fitted, each with the reason."""
     notes: list[str]
     """Notes about the recordings, as sentences."""
     felt: list[list[dict[str, Any] | None]] = field(default_factory=list)
-    """What is felt of the difference from the recordings, of each model at each of its conditions; None at a condition that was computed
-    between recorded ones."""
+    """For each model and each of its conditions: how much of the difference from the recording a
+    finger can feel. ``None`` at a condition that was computed between recorded conditions."""
     grid: dict[str, Any] | None = None
-    """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
-    the triangles between conditions, and the errors of blocks of time that were left out: of the grid (``left_out_rms_db``) and of one condition
-    for all motions (``one_condition_rms_db``)."""
+    """The grid of the conditions, if one was requested: its lines, its cells with their segments,
+    repeatability and status, and the triangles between conditions. It also has the error on time
+    blocks that were left out of the fit: with the grid (``left_out_rms_db``), and with a single
+    condition for all motions (``one_condition_rms_db``)."""
 
     @property
     def warnings(self) -> list[str]:
-        """The warnings stored in the asset, as sentences."""
+        """The warnings that the asset stores, as sentences."""
         found: list[str] = self.texture.manifest.get("provenance", {}).get("warnings", [])
         return found
 
@@ -238,18 +252,20 @@ class Fit:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Tradeoff:
-    """Accuracy against bytes and time."""
+    """Accuracy of models, with their size in bytes and their computing time. ``tradeoff`` returns
+    it."""
 
     columns: dict[str, list[Any]]
-    """Every setting on every recording, as columns for pandas or polars."""
+    """One row for each combination of options on each recording, as columns for pandas or
+    polars."""
     knees: list[dict[str, Any]]
-    """Knees of the fronts."""
+    """The best compromises: the knee of each front of accuracy against bytes or time."""
     left_out: list[dict[str, Any]]
-    """Settings that could not be measured, with reasons."""
+    """Combinations of options that could not be measured, each with the reason."""
     warnings: list[str]
     """Warnings, as sentences."""
     about: dict[str, Any] = field(default_factory=dict)
-    """Program, machine, measure of the error, and recordings."""
+    """The program, the machine, the measure of error and the recordings."""
 
     def __repr__(self) -> str:
         rows = len(self.columns.get("model", []))
@@ -261,13 +277,14 @@ class Comparison:
     """A recording compared with a texture, or with another recording."""
 
     condition: Condition
-    """Speed and force of the recording, and its repeatability."""
+    """Speed, force and repeatability of the recording."""
     representations: list[dict[str, Any]]
-    """If compared with a texture: each representation's model, level, measures and felt error."""
+    """Comparison with a texture: for each representation its model, level, error measures and the
+    error that a finger can feel."""
     other: dict[str, Any] | None
-    """The same measures, if it was compared with another recording."""
+    """Comparison with another recording: the same measures; otherwise ``None``."""
     other_condition: Condition | None
-    """Speed and force of the other recording, and its repeatability."""
+    """Speed, force and repeatability of the other recording."""
     warnings: list[str]
     """Warnings about the recordings, as sentences."""
 
@@ -290,18 +307,19 @@ class Response:
     frequency_hz: npt.NDArray[np.float64]
     """Frequencies, hertz."""
     magnitude: npt.NDArray[np.float64]
-    """Magnitude, in the output's unit divided by the input's."""
+    """Magnitude, in the output's unit divided by the input's unit."""
     phase_rad: npt.NDArray[np.float64]
     """Phase of the output relative to the input, radians."""
     coherence: npt.NDArray[np.float64] | None = None
-    """Coherence, 0 to 1, if it was measured."""
+    """Coherence of input and output, 0 to 1; ``None`` if it was not measured."""
     relative_error: npt.NDArray[np.float64] | None = None
-    """Relative standard deviation of the magnitude, if it was measured."""
+    """Relative standard deviation of the magnitude; ``None`` if it was not measured."""
     about: dict[str, Any] = field(default_factory=dict)
-    """Settings, hits or windows with the reasons why some were thrown out, peak and warnings."""
+    """The settings, the peak, the warnings, and the hits or windows; if one was discarded, it has
+    the reason."""
 
     def to_csv(self) -> bytes:
-        """Return the CSV file that ``process``, ``fit`` and scenes accept as a response."""
+        """Return the response as a CSV file, which ``process``, ``fit`` and scenes accept."""
         return _htex.response_csv(self.frequency_hz.tolist(), self.magnitude.tolist(), self.phase_rad.tolist())
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -347,7 +365,8 @@ def _simulation(columns: Any, csv: bytes, rate_hz: float, response: Response) ->
 
 
 def quality_table(texture: _htex.Texture) -> dict[str, list[Any]]:
-    """Return the stored error of each model at each condition, as columns."""
+    """Return the errors that a texture stores for each model at each condition, as columns for
+    pandas or polars."""
     rows: list[dict[str, Any]] = []
     for representation in texture.manifest["representations"]:
         for at in representation["at"]:
@@ -373,7 +392,7 @@ def _reopen(
 
 
 for _class in (Condition, Exponent, Spectrum, Reach, Coverage, Envelope, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
-    # Evaluated here, because `typing.get_type_hints` would look for the names in the module that is
-    # set below.
+    # Evaluated here, because later `typing.get_type_hints` would look for the names in the module
+    # `htex`, which is set below.
     _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

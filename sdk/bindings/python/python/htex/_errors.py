@@ -1,6 +1,7 @@
 """The exceptions of the package.
 
-If the system reports an error for a file, it is an ``OSError`` such as ``FileNotFoundError``.
+If the operating system reports an error for a file, the package raises an ``OSError`` instead, such
+as ``FileNotFoundError``.
 """
 
 
@@ -13,19 +14,19 @@ class AssetError(Error):
 
 
 class BuildError(Error):
-    """A recipe is wrong, or a library cannot be built."""
+    """A recipe is invalid, or a library cannot be built from it."""
 
 
 class DeviceError(Error):
-    """A device or its driver is missing, in use, or failed. The device is at rest."""
+    """A device or its driver is missing, is in use, or failed. The device is then at rest."""
 
 
 class ExchangeError(Error):
-    """A file of another format does not follow its format."""
+    """A file to import is not valid in its format, or a texture cannot be exported to a format."""
 
 
 class LibraryError(Error):
-    """A file is not a valid library, or a texture cannot be in one."""
+    """A file is not a valid library, or a texture cannot be packed into a library."""
 
 
 class ModelError(Error):
@@ -41,7 +42,7 @@ class OptionError(Error, ValueError):
 
 
 class RecordingError(Error):
-    """A recording cannot be read, or contains no texture."""
+    """A recording cannot be read, or contains no usable texture signal."""
 
 
 class SceneError(Error):

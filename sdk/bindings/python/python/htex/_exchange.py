@@ -17,7 +17,7 @@ formats = _htex.formats
 
 
 class Importing(FitSettings, Metadata, total=False):
-    """How a signal is fitted, and the texture's metadata."""
+    """Keywords of ``import_file``: how models are fitted, and the texture's metadata."""
 
 
 @keywords(Importing)
@@ -37,15 +37,15 @@ def import_file(
 ) -> Imported:
     """Read a file of another format as a texture, as ``htex import`` does.
 
-    ``formats()`` lists what is read, kept and lost.
+    ``formats()`` lists the formats, and for each what is kept and what is lost.
 
-    Files that state units, speeds and forces (Penn's HaTT), or that contain a texture (glTF), take
-    no settings except metadata. All other files are signals within ±1, to which models are fitted.
-    They need ``full_scale`` (the value of 1, in the unit of ``quantity``), ``speed_mm_s`` and
-    ``force_n``. An image of a friction map (``.png``) needs the same three settings, where 1 is
-    white, and ``pitch_mm``, the distance between its pixels, unless it states one; it is not
-    fitted. If a file gives frequencies as positions in an actuator's range, ``profile`` names that
-    actuator.
+    Give only metadata for files that state units, speeds and forces (Penn's HaTT), and for files
+    that contain a texture (glTF). All other files contain a signal between -1 and 1, to which
+    models are fitted. For these, give ``full_scale`` (the value that 1 stands for, in the unit of
+    ``quantity``), ``speed_mm_s`` and ``force_n``. For an image of a friction map (``.png``), give
+    the same three settings, where ``full_scale`` is the value of white. Also give ``pitch_mm``, the
+    distance between its pixels, unless the file states it. No model is fitted to an image. If a
+    file states frequencies as positions in an actuator's range, name the actuator with ``profile``.
     """
     fitting, metadata = split("import_file", settings, FitSettings, Metadata)
     if "models" in fitting:
@@ -85,15 +85,16 @@ def export(
     coding: Literal["vectorial", "wavelet"] | None = None,
     seed: int = 0,
 ) -> dict[str, Any]:
-    """Write a texture at a condition, or along a stroke, as a file for phones, controllers and
-    engines, as ``htex export`` does.
+    """Write a texture as a file for phones, game controllers and game engines, as ``htex export``
+    does. The file plays the texture at one condition, or along a stroke.
 
-    ``to`` is the name of a format. ``stroke`` is a CSV file with time, speed and force (``t_s``,
-    ``speed_mm_s``, ``force_n``), to use instead of a condition. ``profile`` names the actuator,
-    which determines how much of the spectrum can be played; the default is the format's own.
-    ``rate_hz`` is for WAV, ``coding`` for ``hjif``. The result states what is lost, as in the
-    command's JSON: the file is read again, played through the profile, and compared with the
-    texture's own samples.
+    ``to`` is the name of a format (``formats()`` lists them). ``speed_mm_s`` and ``force_n`` are
+    the condition. Instead, ``stroke`` may name a CSV file with time, speed and force (columns
+    ``t_s``, ``speed_mm_s``, ``force_n``). ``profile`` names the actuator, which limits the part of
+    the spectrum that can be played; each format has a default. ``rate_hz`` applies only to WAV,
+    ``coding`` only to ``hjif``. The result is a dict that states what is lost, as in the JSON of
+    the command. To measure the loss, the file is read again, played through the profile, and
+    compared with the texture's own samples.
     """
     path = Path(file)
     if stroke is not None and (speed_mm_s is not None or force_n is not None):

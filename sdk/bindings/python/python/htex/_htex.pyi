@@ -55,7 +55,7 @@ class _Readable(Protocol):
 
 @final
 class Texture:
-    """A texture: an opened asset, and the models that play it."""
+    """A texture: an open asset (a .htex file), and the models that play it."""
 
     @property
     def name(self) -> str: ...
@@ -110,7 +110,8 @@ class Texture:
 
 @final
 class Library:
-    """A library: one file with thousands of textures. Each texture is read when it is requested."""
+    """A library: a single file with thousands of textures. A texture is read only when it is
+    requested."""
 
     def __new__(
         cls,
@@ -184,7 +185,8 @@ class Voice:
 
 @final
 class Scene:
-    """A scene with its assets and its device, which is not opened."""
+    """A scene: surfaces, a motion of the finger, and the device for which samples are made. The
+    device itself is not opened."""
 
     def __new__(
         cls,
@@ -219,11 +221,13 @@ class Scene:
 class Device:
     """An open device, which plays samples.
 
-    Its name selects it, such as ``sdl``. If it is closed without ``finish``, it goes to rest.
+    ``name`` selects the device, such as ``sdl``. If it is closed without ``finish``, it goes to
+    rest at once.
 
     A ``with`` block finishes the device at its end; after an exception it only closes the device.
-    ``settings`` are the device's settings (``devices()`` lists them). ``rate_hz`` defaults to the
-    device's own. A display that is driven by a voltage cannot be opened here: use ``htex play``.
+    ``settings`` are the device's settings; ``devices()`` lists them. ``rate_hz`` is the sample
+    rate; the default is the device's own. A display that is driven by a voltage cannot be opened
+    here: use ``htex play``.
     """
 
     def __new__(
@@ -249,7 +253,7 @@ class Device:
 
 @final
 class Build:
-    """A planned build of a library."""
+    """A planned build of a library from a recipe."""
 
     def __new__(
         cls, recipe: str, output: str, keep_going: bool, work: _Path | None, plugins: Sequence[_Path], no_removals: bool

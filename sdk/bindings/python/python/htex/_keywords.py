@@ -1,5 +1,5 @@
-"""Keywords that functions share: the settings of the command, taken from its definitions
-(``_settings.py`` is generated).
+"""Keywords that several functions share. They are settings of the ``htex`` command;
+``_settings.py`` is generated from its definitions.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Reading(ReadingSettings, total=False):
-    """How recordings are read."""
+    """Keywords that state how recordings are read."""
 
-    speed_mm_s: Annotated[float | None, "Scanning speed, mm/s, where the recording does not say, or instead of what it says"]
-    force_n: Annotated[float | None, "Normal force, newtons, where the recording does not say, or instead of what it says"]
+    speed_mm_s: Annotated[float | None, "Scanning speed, mm/s, if the recording does not state it, or to replace what it states"]
+    force_n: Annotated[float | None, "Normal force, newtons, if the recording does not state it, or to replace what it states"]
     response: Annotated[
         str | os.PathLike[str] | Response | None,
-        "Response of the recording setup to divide out: one that was measured, or a CSV file with columns frequency_hz, magnitude and, "
+        "Response of the recording setup, by which spectra are divided: one that was measured, or a CSV file with columns frequency_hz, magnitude and, "
         "if known, phase_rad",
     ]
     strict: Annotated[bool | None, "Refuse recordings with findings that are errors or warnings"]
 
 
 class Fitting(Reading, FitSettings, Metadata, total=False):
-    """How recordings are read and fitted, and the texture's metadata."""
+    """Keywords that state how recordings are read and fitted, and the texture's metadata."""
 
 
 def keywords(kind: type) -> Callable[[F], F]:
-    """Show the keywords of ``kind`` in the signature and the docstring of a function that takes
-    them as ``**settings``.
+    """Decorate a function that takes the keywords of ``kind`` as ``**settings``: show them in its
+    signature and docstring.
     """
 
     def described(function: F) -> F:
@@ -64,9 +64,10 @@ def keywords(kind: type) -> Callable[[F], F]:
 
 
 def split(function: str, settings: Mapping[str, object], *kinds: type) -> list[dict[str, Any]]:
-    """Return the settings of each kind.
+    """Return the settings of each kind, in one dict per kind.
 
-    Refuse a keyword that belongs to none of them; ``None`` stands for the default.
+    Refuse a keyword that belongs to none of the kinds. Drop settings that are ``None``, which
+    stands for the default.
     """
     left = dict(settings)
     parts = [{name: left.pop(name) for name in typing.get_type_hints(kind) if name in left} for kind in kinds]
@@ -76,7 +77,7 @@ def split(function: str, settings: Mapping[str, object], *kinds: type) -> list[d
 
 
 def as_json(settings: Mapping[str, Any]) -> str:
-    """Return settings in the form that the extension takes."""
+    """Return settings as JSON, which the extension module takes."""
     for name, value in settings.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise _errors.OptionError(f"{name} is {value}; give a finite number")
@@ -84,7 +85,8 @@ def as_json(settings: Mapping[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Convert paths, numbers and arrays of NumPy, and other sequences to what JSON can represent.
+    """Convert paths, NumPy numbers and arrays, and other sequences to values that JSON can
+    represent.
     """
     if isinstance(value, os.PathLike):
         return os.fspath(value)

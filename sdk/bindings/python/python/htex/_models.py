@@ -16,7 +16,7 @@ from . import _htex
 Numbers = npt.NDArray[np.float64]
 
 Parameters = Mapping[str, Any]
-"""Parameters by name: a number for a scalar field, a list of numbers for a list."""
+"""Parameters by name: a number for a scalar field, a list of numbers for a list field."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Field:
     """A parameter of a model written in Python."""
 
     name: str
-    """Name, units included, such as ``peak_hz``."""
+    """Name of the parameter, including its unit, such as ``peak_hz``."""
     unit: str
-    """Unit symbol; ``1`` for a pure number."""
+    """Symbol of the unit; ``1`` for a pure number."""
     min: float
-    """Smallest value allowed."""
+    """Smallest allowed value."""
     max: float
-    """Largest value allowed."""
+    """Largest allowed value."""
     description: str = ""
     """Meaning of the parameter."""
     most: int | None = None
@@ -50,7 +50,7 @@ class Field:
 
 
 class Model(Protocol):
-    """What a class must have for ``register_model``."""
+    """What a class must define so that ``register_model`` accepts it."""
 
     id: str
     fields: Sequence[Field]
@@ -63,26 +63,29 @@ _Class = TypeVar("_Class", bound="type[Model]")
 
 
 def register_model(model: _Class) -> _Class:
-    """Register a model written in Python, for prototypes. Also usable as a decorator.
+    """Register a model written in Python, for prototypes. This function can also be used as a
+    decorator.
 
-    ``model`` is a class that is instantiated without arguments. It has ``id`` (reverse-DNS, such as
-    ``org.example.plateau``), ``fields`` (a list of ``Field``), and these methods:
+    ``model`` is a class whose constructor needs no arguments. It has an ``id`` in reverse-DNS form,
+    such as ``org.example.plateau``, a list of parameters called ``fields`` (each is a ``Field``),
+    and these methods:
 
-    - ``fit(frequency_hz, magnitude)`` returns the parameters for a spectrum, by name;
-    - ``magnitude(parameters, frequency_hz)`` returns a magnitude for each frequency, in any scale.
-      A voice plays noise with these magnitudes;
-    - ``voice(parameters, rate_hz, seed)``, which is optional, returns an object that plays instead.
-      Its ``render(n)`` returns the next ``n`` samples, with unit RMS. Its ``retune(parameters)``
-      changes the parameters, for textures with several conditions.
+    - ``fit(frequency_hz, magnitude)`` returns a dict of the parameters that describe a spectrum;
+    - ``magnitude(parameters, frequency_hz)`` returns a magnitude for each frequency. Their common
+      scale does not matter. A voice plays noise with these magnitudes;
+    - ``voice(parameters, rate_hz, seed)`` is optional. It returns an object that makes the samples
+      instead of that noise. The object's ``render(n)`` returns the next ``n`` samples, with an RMS
+      of 1. Its ``retune(parameters)`` changes the parameters, which textures with several
+      conditions need.
 
-    ``name``, ``version`` and the first line of the class's docstring describe the model in
-    ``htex.models()``.
+    ``htex.models()`` shows the class's ``name`` and ``version``, if it has them, and the first line
+    of its docstring.
 
-    Only this process knows the model: all later calls of ``fit``, ``open``, ``tradeoff``,
-    ``models`` and ``Scene`` can use it, the command cannot. It replaces a registered model with the
-    same id. Its methods run under the interpreter's lock and are slow; write a model that others
-    will use in Rust or C. If a method raises, the caller gets a ``ModelError`` with that exception
-    as its cause.
+    Only this process knows the model. All later calls of ``fit``, ``open``, ``tradeoff``,
+    ``models`` and ``Scene`` can use it; the ``htex`` command cannot. The model replaces a
+    registered model with the same id. Its methods are slow, because they run under Python's global
+    interpreter lock. If others will use your model, write it in Rust or C. If a method raises an
+    exception, the caller gets a ``ModelError`` whose cause is that exception.
     """
     if not inspect.isclass(model):
         raise TypeError(f"expected a class, got {type(model).__name__}; give the class itself, not an object")
@@ -107,7 +110,8 @@ def register_model(model: _Class) -> _Class:
 
 
 class _Adapter:
-    """A model whose parameters are arrays. It checks the results of the author's class."""
+    """Calls the author's class with parameters by name, where the extension module uses flat
+    arrays, and checks its results."""
 
     def __init__(self, model: Any, fields: list[Field]) -> None:
         self.model = model
@@ -161,7 +165,7 @@ class _Adapter:
 
 
 class _Voice:
-    """A voice that checks the samples of the author's voice."""
+    """Calls the author's voice and checks its samples."""
 
     def __init__(self, adapter: _Adapter, voice: Any) -> None:
         if not hasattr(voice, "render"):

@@ -1,4 +1,4 @@
-"""Simulated recordings, and responses of recording rigs and finger displays."""
+"""Simulate recordings, and measure the responses of recording rigs and finger displays."""
 
 from __future__ import annotations
 
@@ -31,14 +31,17 @@ def simulate(
 ) -> Simulation:
     """Simulate a recording of a finger that slides over a surface, as ``htex simulate`` does.
 
-    It is not a measurement, and textures fitted to it say so. ``motion`` is either back-and-forth
-    sweeps at one speed (80 mm/s) and force (0.4 N), or strokes of random speed and force between
-    two values (36 to 280 mm/s, 0.15 to 3.8 N). The same seed gives the same samples.
+    The result is not a measurement, and textures fitted to it state that they are simulated. With
+    ``motion="sweeps"``, the finger sweeps back and forth at one speed and force; the defaults are
+    80 mm/s and 0.4 N. With ``motion="free"``, it makes strokes of random speed and force between
+    two values; the defaults are 36 to 280 mm/s and 0.15 to 3.8 N. The same seed gives the same
+    samples.
 
-    ``law`` states how the texture follows the motion: the exponents ``frequency_speed``,
-    ``level_speed`` and ``level_force``, relative to 80 mm/s and 0.4 N. For a relief they are 1, 0
-    and 1. ``drift_db_per_min`` changes the texture's level during the recording. ``lifted`` is the
-    fraction of the time that the finger is off the surface, 0 to 0.8.
+    ``law`` states how frequencies and level change with speed and force, by the exponents
+    ``frequency_speed``, ``level_speed`` and ``level_force``, relative to 80 mm/s and 0.4 N. For a
+    surface with a relief they are 1, 0 and 1. ``drift_db_per_min`` is the change of the texture's
+    level during the recording, dB per minute. ``lifted`` is the fraction of the time that the
+    finger is off the surface, 0 to 0.8.
     """
     if motion not in ("sweeps", "free"):
         raise _errors.OptionError(f"motion is {motion!r}; known are sweeps, free")
@@ -59,9 +62,9 @@ def response(
     """Measure the frequency response of a recording rig or a finger display, as ``htex response``
     does.
 
-    ``input`` is the force of an impact hammer or, with ``continuous=True``, a drive such as noise.
-    ``output`` is the response of the rig or the display. Both are series at ``rate_hz``, or lists
-    of series, one for each recording.
+    ``input`` is the force of an impact hammer or, with ``continuous=True``, a continuous excitation
+    such as noise. ``output`` is the signal of the rig or the display that responds to it. Both are
+    series at ``rate_hz``, or lists of series, one for each recording.
     """
     (given,) = split("response", settings, ResponseSettings)
     inputs, outputs = _series(input), _series(output)
@@ -75,7 +78,7 @@ def response(
 
 
 def _series(series: Any) -> list[list[float]]:
-    """Return one or several series as lists of numbers."""
+    """Return one series or several series as a list of lists of numbers."""
     several = isinstance(series, (list, tuple)) and len(series) > 0 and np.ndim(series[0]) > 0
     arrays = [np.ma.filled(np.ma.asarray(one, dtype=np.float64), np.nan) for one in (series if several else [series])]
     for array in arrays:

@@ -1,6 +1,6 @@
-"""Recordings as files: an array is passed as an NPY file, and a data frame as a CSV file.
+"""Convert recordings to files: an array to an NPY file, and a data frame to a CSV file.
 
-Channels, scale and limits are then the same as for such files.
+So arrays and data frames have the same channels, scale and limits as these files.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
 
 
 def sources(recordings: Any) -> list[Any]:
-    """Return the sources of recordings. A list of numbers is one recording."""
+    """Return the source of each recording. A list of numbers is a single recording."""
     several = isinstance(recordings, (list, tuple))
     if several and not recordings:
         raise _errors.OptionError("no recordings; give at least one")
@@ -57,8 +57,8 @@ def source(recording: Any) -> Any:
 
 
 def _columns(recording: Any) -> dict[str, Any] | None:
-    """Return the columns of a data frame or a mapping by name; ``None`` for objects without column
-    names.
+    """Return the columns of a data frame or a mapping by name, or ``None`` for objects without
+    column names.
     """
     if not (isinstance(recording, Mapping) or hasattr(recording, "columns")):
         return None
@@ -69,14 +69,16 @@ def _columns(recording: Any) -> dict[str, Any] | None:
 
 
 def _unmasked(what: str, values: Any) -> Any:
-    """Return values as an array. Numpy would read masked values as samples."""
+    """Return values as an array. Refuse masked values, because NumPy would turn them into
+    samples."""
     if np.ma.is_masked(values):
         raise _errors.OptionError(f"{what} has masked values; leave their rows out, or fill them with filled()")
     return np.asarray(values)
 
 
 def _csv(columns: Mapping[str, Any]) -> bytes:
-    """Return columns as a CSV file with all digits, with names that the reader knows."""
+    """Return columns as a CSV file. It has all digits of the numbers, and the column names as they
+    are."""
     for name, values in columns.items():
         if values.ndim != 1 or values.dtype.kind not in "biuf":
             raise TypeError(f"column {name!r} is of {values.dtype} in {values.ndim} dimensions; give numbers, one for each sample")

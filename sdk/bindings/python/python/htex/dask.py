@@ -1,11 +1,11 @@
 """Build libraries from recipes on a Dask cluster.
 
 The recipe and the results are the same as for :func:`htex.build`; only the fits run on the workers
-of the cluster. Every worker needs this package, in the same version, and the recordings: under the
-same paths, or as URIs with the environment variables for reading them.
+of the cluster. Every worker needs the same version of this package. It also needs the recordings,
+either under the same paths, or as URIs together with the environment variables for reading them.
 
-Dask is the only supported engine for clusters. The process that called :func:`build` writes the
-results, so that each is written once.
+Dask is the only supported cluster engine. The process that calls :func:`build` writes all results,
+so that each is written once.
 
 >>> from distributed import Client
 >>> import htex.dask
@@ -35,7 +35,7 @@ else:
 
 __all__ = ["build"]
 
-# Key of a job, the job as JSON, size of its recordings in bytes.
+# A job: its key, the job itself as JSON, and the size of its recordings in bytes.
 Job = tuple[str, str, int]
 # Number of files that a worker hashes at a time.
 _FILES = 32
@@ -59,31 +59,34 @@ def build(
     """Build a library of textures from a recipe on a Dask cluster.
 
     The results are byte-identical to the results of :func:`htex.build`. If a worker is lost, other
-    workers do its work; each result is written only once, here. If the scheduler is lost, the build
-    continues when it is back. If the build itself is interrupted, fitted results stay in
-    ``output``.
+    workers do its work. Only this process writes results, so each is written once. If the scheduler
+    is lost, the build continues when the scheduler is back. If the build itself is interrupted, the
+    results that were fitted so far stay in ``output``.
 
     Args:
         recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs,
             which the workers read.
-        client: The cluster.
-        output: A folder for the results, or a URI. For a URI, results are made in ``work`` and
-            copied when complete.
+        client: The client that is connected to the cluster.
+        output: A folder for the results, or a URI. For a URI, the results are first made in
+            ``work`` and copied to the URI when they are complete.
         keep_going: Leave out a texture that cannot be made instead of raising.
-        work: The folder in which results for a URI are made. Default: one in the user's cache.
-        plugins: Plugins to fit with, as for :func:`htex.build`, under the same paths on every worker.
-        no_removals: Raise and change nothing if the library would lose textures, as for
+        work: The folder in which results for a URI are first made. The default is a folder in the
+            user's cache.
+        plugins: Files of further models to fit, as for :func:`htex.build`. They must have the same
+            paths on every worker.
+        no_removals: If the library would lose textures, raise an error and change nothing, as for
             :func:`htex.build`.
-        shard_bytes: Bytes of recordings that a worker gets at a time. A larger texture is sent
-            alone.
-        patience_s: Longest time without scheduler or workers, seconds.
-        done: Called with the key of each finished job.
+        shard_bytes: Largest size, bytes, of the recordings that a worker gets at a time. A texture
+            with larger recordings gets a turn of its own.
+        patience_s: Longest time to wait for a scheduler or workers that cannot be reached, seconds.
+        done: A function that is called with the key of each finished job.
 
     Returns:
         The report, as in ``build-report.json``.
 
     Raises:
-        BuildError: The recipe is wrong, a texture cannot be made, or the cluster was away for too long.
+        BuildError: The recipe is invalid, a texture cannot be made, or the cluster could not be
+            reached for too long.
         OSError: A file cannot be read or written.
     """
     source = os.fspath(recipe)
@@ -91,7 +94,7 @@ def build(
         source = str(pathlib.Path(source).resolve())
     target = _htex.work_folder(os.fspath(output), work)
     patience = _Patience(patience_s)
-    # Contents are hashed where they are read fastest: on the workers.
+    # The workers hash the recordings, because they can read them fastest.
     while files := _htex.unhashed(source, target):
         hashed: list[tuple[str, str]] = []
         with patience:
@@ -117,7 +120,7 @@ def build(
 
 
 class _Patience:
-    """Wait when the cluster is away, but only for a limited time."""
+    """Wait while the cluster cannot be reached, but only for a limited time."""
 
     def __init__(self, longest_s: float) -> None:
         self.longest_s = longest_s
@@ -141,7 +144,7 @@ class _Patience:
 
 
 def _shards(pending: Iterable[Job], shard_bytes: int) -> Iterator[list[tuple[str, str]]]:
-    """Group jobs, in the order of their keys, which are content hashes."""
+    """Group jobs into shards, in the order of their keys, which are content hashes."""
     shard: list[tuple[str, str]] = []
     size = 0
     for key, job, recording_bytes in sorted(pending):
@@ -155,7 +158,8 @@ def _shards(pending: Iterable[Job], shard_bytes: int) -> Iterator[list[tuple[str
 
 
 def _results(client: Client, work: Callable[[Any], Any], parts: Sequence[Any]) -> Iterator[Any]:
-    """Run parts of the work on the cluster, and yield their results as they finish."""
+    """Run the parts of the work on the cluster, and yield each part's result when it is
+    finished."""
     from distributed import as_completed
 
     names = [_name(work, part) for part in parts]
@@ -188,7 +192,7 @@ def _run(shard: list[tuple[str, str]]) -> list[tuple[str, bytes]]:
 
 
 def _lost() -> tuple[type[BaseException], ...]:
-    """Return the exceptions raised when the scheduler or the workers are away."""
+    """Return the exceptions that are raised when the scheduler or the workers cannot be reached."""
     from distributed import CancelledError, KilledWorker
     from distributed.comm.core import CommClosedError
 

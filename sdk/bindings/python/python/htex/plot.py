@@ -1,4 +1,4 @@
-"""Plots of spectra and trade-offs. They need matplotlib (``pip install htex[plot]``)."""
+"""Plot spectra and trade-offs. The plots need matplotlib (``pip install htex[plot]``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ else:
 
 
 def spectrum(spectrum: Spectrum | Processed, *, ax: Axes | None = None, label: str | None = None) -> Axes:
-    """Draw magnitudes over frequency, both logarithmic."""
+    """Draw the magnitudes of a spectrum over frequency, both on logarithmic axes."""
     if isinstance(spectrum, Processed):
         spectrum = spectrum.spectrum
     ax = _axes(ax)
@@ -50,7 +50,8 @@ def texture(
     reference: Spectrum | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the spectra of a texture's models, with a recorded spectrum on top."""
+    """Draw the spectra of a texture's models and, if ``reference`` is given, a recorded
+    spectrum."""
     ax = _axes(ax)
     if reference is not None:
         spectrum(reference, ax=ax, label="recording")

@@ -1,11 +1,11 @@
-//! Arguments and results of the functions.
+//! Arguments and results of the functions that JavaScript calls.
 
 use serde::Serialize;
 
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// The result of a function: a document, and bytes.
+/// The result of a function: a JSON document, and bytes.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) json: Vec<u8>,

@@ -1,4 +1,4 @@
-//! The C function, and the functions that it calls by name.
+//! The C function of this module, and the functions that it calls by their names.
 
 use std::ffi::c_char;
 
@@ -9,19 +9,19 @@ use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`,
+/// The result of a call. The caller must free its memory with `htex_free(json, json_len)` and
 /// `htex_free(bytes, bytes_len)`.
 #[repr(C)]
 #[derive(Debug)]
 #[allow(non_camel_case_types)] // As the names of the C header.
 pub struct htex_author_result {
-    /// A JSON document. If the call fails, it is `{ code, message }`.
+    /// A JSON document in UTF-8. If the call fails, it is `{ code, message }`.
     pub json: *mut u8,
-    /// Its length, bytes.
+    /// Length of `json`, bytes.
     pub json_len: usize,
-    /// A file, or numbers; NULL if there are none.
+    /// The bytes of a file, or of numbers; NULL if there are none.
     pub bytes: *mut u8,
-    /// Number of bytes.
+    /// Length of `bytes`, bytes.
     pub bytes_len: usize,
 }
 
@@ -35,12 +35,11 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
     crate::scene::FUNCTIONS,
 ];
 
-/// Calls the function with a given name, passing a JSON document and the bytes of files. A call
-/// that fails also has a result.
+/// Calls the function with this name, and passes it a JSON document and the bytes of files. A call
+/// that fails also writes a result.
 ///
 /// # Safety
-/// The pointers are the caller's: what they point to is there during the call, and `out` is
-/// written.
+/// The pointers must be valid during the call. `out` is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_author_call(
     name: *const c_char,
@@ -71,7 +70,7 @@ pub unsafe extern "C" fn htex_author_call(
             bytes: handed_over(bytes)?,
             bytes_len: bytes.len(),
         };
-        // After `out` is written, because the document of an error is also handed over.
+        // Only after `out` is written, because the caller also receives the document of an error.
         answer.map(drop).map_err(Failure::from)
     })
 }
@@ -83,7 +82,7 @@ fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> 
     function(Document::of_call(json)?, files)
 }
 
-/// Copies bytes to memory that the caller frees; NULL if there are no bytes.
+/// Copies bytes to memory that the caller frees. Returns NULL if there are no bytes.
 fn handed_over(bytes: &[u8]) -> Result<*mut u8, Failure> {
     if bytes.is_empty() {
         return Ok(std::ptr::null_mut());

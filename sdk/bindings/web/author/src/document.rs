@@ -1,7 +1,7 @@
-//! Documents of calls: JSON objects whose entries are taken by name.
+//! The documents of calls: JSON objects. Functions take entries out of them by name.
 //!
-//! Derived code would take a kilobyte or more for each struct, so only the tables of settings use
-//! it.
+//! Only the tables of settings use `serde`'s derived code, because it takes a kilobyte or more for
+//! each struct.
 
 #[cfg(feature = "make")]
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use crate::refusal::Refusal;
 
-/// An object from which entries are taken.
+/// A JSON object from which entries are taken.
 pub(crate) struct Document {
     left: Map<String, Value>,
     known: Vec<&'static str>,
@@ -35,12 +35,12 @@ impl Document {
     }
 
     fn remove(&mut self, name: &'static str) -> Option<Value> {
-        // For the message of `finish`, which lists what could have been given.
+        // Stored for the error of `finish`, which lists all names that the function knows.
         self.known.push(name);
         self.left.remove(name)
     }
 
-    /// Takes the entries that belong to a table of settings.
+    /// Takes the entries whose names are in a table of settings.
     #[cfg(feature = "make")]
     pub(crate) fn table<T: DeserializeOwned>(
         &mut self,
@@ -104,7 +104,7 @@ impl Document {
         self.left
     }
 
-    /// Refuses a document that still has entries.
+    /// Returns an error if entries remain, because their names are unknown.
     pub(crate) fn finish(self) -> Result<(), Refusal> {
         match self.left.keys().next() {
             None => Ok(()),
@@ -119,7 +119,7 @@ impl Document {
 
 /// A finite number.
 pub(crate) fn number(value: &Value) -> Option<f64> {
-    // JSON has neither NaN nor infinity, so no check is needed.
+    // JSON has no NaN and no infinity, so every number is finite.
     value.as_f64()
 }
 

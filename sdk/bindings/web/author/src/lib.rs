@@ -1,13 +1,13 @@
-//! The npm package's modules apart from the player. Each module is libhtex with one more C
-//! function, [`htex_author_call`]. It makes textures (the feature `make`, `htex-author.wasm`), also
-//! from files of other haptic formats (`import`, `htex-import.wasm`), or it plays scenes (`scene`,
-//! `htex-scene.wasm`). JavaScript is its only caller: `sdk/bindings/web/src/author.js`, `import.js` and
-//! `scene.js`.
+//! The WASM modules of the npm package, except the player. Each module is libhtex with one
+//! additional C function, [`htex_author_call`]. There are three builds. `htex-author.wasm` makes
+//! textures (feature `make`). `htex-import.wasm` also makes them from files of other haptic formats
+//! (feature `import`). `htex-scene.wasm` plays scenes (feature `scene`). Only JavaScript calls the
+//! function: `sdk/bindings/web/src/author.js`, `import.js` and `scene.js`.
 //!
-//! A call has a name, a JSON document and the bytes of files. Its result has the same parts. A
-//! single function keeps struct layouts out of JavaScript, and its overhead is microseconds, little
-//! compared with what the calls do. `sdk/bindings/web/src/author.d.ts` and `import.d.ts` define names,
-//! documents and results.
+//! A call passes a name, a JSON document and the bytes of files. It returns a JSON document and
+//! bytes. With this single function, JavaScript need not know the layout of structs. The overhead
+//! is some microseconds, little compared with the work of a call.
+//! `sdk/bindings/web/src/author.d.ts` and `import.d.ts` define the names, documents and results.
 
 mod answer;
 mod call;
@@ -20,5 +20,5 @@ mod scene;
 
 pub use call::{htex_author_call, htex_author_result};
 
-// Exports all functions of libhtex together with this one.
+// Exports all functions of libhtex together with this module's function.
 pub use htex_c::htex_status;

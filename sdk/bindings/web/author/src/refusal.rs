@@ -1,4 +1,4 @@
-//! Errors of calls: libhtex's status, a more specific code, and the text.
+//! Errors of calls. An error has libhtex's status, a more specific code, and a text.
 
 use htex::model::HostError;
 use htex_c::calls::Failure;
@@ -46,7 +46,7 @@ impl Refusal {
     }
 }
 
-/// Only the text, as an error.
+/// An error that has only a text.
 #[derive(Debug)]
 struct Text(String);
 

@@ -1,5 +1,5 @@
-//! Plays scenes from memory. A scene is opened once, and then referred to by a number until it is
-//! freed.
+//! Plays scenes whose files are in memory. A scene is opened once. Calls then refer to it by a
+//! number until it is freed.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ struct OpenScene {
     device: DeviceOverride,
     loaded: Scene,
     able: Capabilities,
-    /// Renders the next samples, once they have been requested.
+    /// The renderer of the next samples. It is made when samples are first requested.
     playing: Option<Renderer>,
 }
 
@@ -75,7 +75,7 @@ struct SceneSummary<'a> {
     notes: Vec<String>,
 }
 
-/// Opens a scene. The first file is the scene; the others are the files that it names.
+/// Opens a scene. The first file is the scene. The other files are those that the scene names.
 pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.texts("files")?;
     let embedded = call.flag("trusted")?;
@@ -112,7 +112,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let notes = open.loaded.notes.iter().map(ToString::to_string).collect();
     let unit = open.able.quantity.unit();
     let id = SCENES.with_borrow_mut(|scenes| {
-        // Numbers are not used again, so a freed scene is never mistaken for another.
+        // A number is never used again, so a freed scene is never mistaken for another one.
         scenes.last += 1;
         scenes.open.insert(scenes.last, open);
         scenes.last
@@ -121,14 +121,15 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&opened, Vec::new())
 }
 
-/// Returns the built-in models. Models embedded in textures run if that is allowed.
+/// Returns the built-in models. If `embedded` is true, models that are embedded in textures can
+/// also run.
 fn models(embedded: bool) -> Result<Registry, Refusal> {
     let engine = if embedded { WasmEngine::Checked } else { WasmEngine::Off };
     let limits = WasmLimits::default().with_engine(engine);
     Ok(Registry::search(&Search::builtin().with_limits(limits))?)
 }
 
-/// Returns the device that is given in place of the scene's. It is not opened.
+/// Returns the device that is given instead of the scene's own. The device is not opened.
 fn device(mut given: Document) -> Result<DeviceOverride, Refusal> {
     let device = DeviceOverride {
         adapter: given.text("device")?,
@@ -155,8 +156,8 @@ fn settings(given: Document) -> Result<BTreeMap<String, String>, Refusal> {
     given.rest().into_iter().map(text).collect()
 }
 
-/// Renders a scene from its start, for its own duration or the given one. The bytes are the
-/// samples.
+/// Renders a scene from its start, for its own duration or a given duration. The bytes of the
+/// answer are the samples.
 pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let seconds = call.number("seconds")?;
@@ -181,13 +182,14 @@ pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal
     })
 }
 
-/// Renders the next samples of a scene, fewer at its end. The bytes are the samples.
+/// Renders the next samples of a scene. The bytes of the answer are the samples. At the end of the
+/// scene they are fewer than requested.
 pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let frames = count(&mut call, "frames")?;
     call.finish()?;
     of_scene(id, |open| {
-        // Taken out, because making a renderer borrows the whole scene.
+        // The renderer is taken out of the scene, because making one borrows the whole scene.
         let mut renderer = match open.playing.take() {
             Some(renderer) => renderer,
             None => open.renderer(&open.loaded)?.0,
@@ -200,8 +202,8 @@ pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     })
 }
 
-/// Renders a scene at another motion, one block of samples for each line of the file: speed, force
-/// and place. The bytes are the samples.
+/// Renders a scene at another motion. Each line of the file has the speed, force and place for one
+/// block of samples. The bytes of the answer are the samples.
 pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let block = count(&mut call, "block")?;
@@ -222,7 +224,8 @@ pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         let mut samples = zeros(motions.len().saturating_mul(block))?;
         for (i, (part, motion)) in samples.chunks_mut(block).zip(motions).enumerate() {
             let [speed_mm_s, force_n, x_mm, y_mm] = *motion;
-            // A single NaN is a failed reading, not an unknown place.
+            // If only one of them is NaN, the reading failed, and the place does not count as
+            // unknown.
             let unknown = x_mm.is_nan() && y_mm.is_nan();
             let motion =
                 Motion::new(speed_mm_s, force_n).with_place_mm((!unknown).then_some([x_mm, y_mm]));
@@ -270,7 +273,7 @@ fn of_scene(
 fn zeros(frames: usize) -> Result<Vec<f32>, Refusal> {
     let mut samples = Vec::new();
     samples
-        // `vec!` would end the module if there is not enough memory.
+        // `vec!` would abort the module if there is not enough memory.
         .try_reserve_exact(frames)
         .map_err(|_| Refusal::argument(format!("{frames} samples do not fit into memory")))?;
     samples.resize(frames, 0.0);
@@ -305,7 +308,8 @@ impl OpenScene {
             devices: Some(&self.devices),
         };
         let device = DeviceOverride { live: true, ..self.device.clone() };
-        // Loaded again, because some settings of devices have another default for a live motion.
+        // Loads the scene again, because some device settings have another default for a live
+        // motion.
         let mut loaded = Scene::from_files(&self.bytes, &self.files, &around, &device)?;
         loaded.file.motion = file::Motion::Live;
         loaded.file.duration_s = None;

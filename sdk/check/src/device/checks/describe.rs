@@ -8,7 +8,7 @@ use crate::device::case::{Case, skip_missing};
 
 const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
 
-/// A library that could be loaded has the marker and the exports.
+/// Always passes, because a library that could be loaded has the marker and the exports.
 pub(crate) fn loaded(case: &Case) -> CheckResult {
     case.native()?;
     Ok(Finding::passed("the library was loaded"))
@@ -24,13 +24,14 @@ pub(crate) fn descriptor(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("settings", settings as f64))
 }
 
-/// Made-up extensions must be reported as absent.
+/// Checks that the device reports made-up extensions as absent.
 pub(crate) fn extensions(case: &Case) -> CheckResult {
     let native = case.native()?;
     made_up_extensions(|id| native.has_extension(id))
 }
 
-/// Endpoints must choose settings of the descriptor. An empty list or a missing driver is valid.
+/// Checks that each endpoint names a setting of the descriptor. An empty list or a missing driver
+/// is valid.
 pub(crate) fn endpoints(case: &Case) -> CheckResult {
     let descriptor = case.adapter.descriptor();
     let known = |name: &str| descriptor.settings.iter().any(|setting| setting.name == name);
@@ -68,7 +69,7 @@ pub(crate) fn capabilities(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
-/// Unusable settings must be refused, in `capabilities` of an output and in `open`.
+/// Checks that unusable settings are refused, by `open` and by an output's `capabilities`.
 pub(crate) fn bad_settings(case: &Case) -> CheckResult {
     let native = case.native()?;
     let (descriptor, settings) = (case.adapter.descriptor(), case.settings()?);
@@ -80,7 +81,7 @@ pub(crate) fn bad_settings(case: &Case) -> CheckResult {
     let asked = refused(descriptor, &settings, |lines| {
         match native.capabilities_of(lines) {
             Ok(_) => None,
-            // An error text without a setting's name is entirely in `what`.
+            // If the error text names no setting, the whole text is in `what`.
             Err(DeviceError::Setting { name, what }) if name.is_empty() => {
                 Some((INVALID_SETTING, what))
             }
@@ -100,11 +101,11 @@ fn of_call(call: &str, finding: Finding) -> Finding {
     Finding::failed(format!("`{call}`: {}", finding.message))
 }
 
-/// Unusable lines of settings, and how the text of their refusal must begin.
+/// Unusable lines of settings, and how the text of the resulting error must begin.
 struct WrongLines {
     what: String,
     lines: String,
-    /// A setting's name or a line; empty for an empty line.
+    /// Beginning of the error text: a setting's name, or the line; empty for an empty line.
     begins: String,
 }
 
@@ -139,7 +140,7 @@ fn refused(
         .with("settings", count as f64))
 }
 
-/// Builds settings with exactly one error each, among valid ones.
+/// Builds settings with exactly one error each; all other settings are valid.
 fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     let mut single = vec![
         "no_such_setting_=1\n".to_owned(),
@@ -149,7 +150,8 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     single.extend(descriptor.settings.iter().flat_map(wrong_lines));
     let in_place = single.into_iter().map(|line| {
         let begins = line.trim_end().split('=').next().unwrap_or_default();
-        // Without the valid line of the same setting, because two lines would be a second error.
+        // Leaves out the valid line of the same setting, because two lines for one setting would be
+        // a second error.
         let others = good.lines().filter(|l| !l.starts_with(&format!("{begins}=")));
         let others: String = others.flat_map(|l| [l, "\n"]).collect();
         WrongLines {
@@ -184,7 +186,7 @@ fn wrong_lines(setting: &Setting) -> Vec<String> {
     values.iter().map(line).collect()
 }
 
-/// Unusable arrays must be refused, and no call may write beyond the arrays that it gets.
+/// Checks that unusable arrays are refused, and that no call writes beyond the arrays that it gets.
 pub(crate) fn arrays(case: &Case) -> CheckResult {
     case.native()?.check_arrays(&case.settings()?, &case.format()?)?;
     let kept = "null and misaligned arrays are refused, and nothing is written beyond an array";

@@ -7,18 +7,19 @@ use htex_device::{Direction, Input, Output};
 use crate::device::case::{Case, check_closed, read_all, write_all};
 use crate::harness::{CheckResult, Finding, Growth};
 
-/// Maximum number of blocks over which memory must not grow.
+/// Maximum number of blocks that the check of memory plays or reads.
 const BLOCKS: usize = 10_000;
 /// Block sizes of writes and reads in the check of memory, frames.
 const WRITE_BLOCK: usize = 256;
 const READ_BLOCK: usize = 64;
-/// Longest total duration of the samples of an output with a clock, and of an input, seconds.
+/// Longest total duration of the samples that an output with a clock plays, or an input reads,
+/// seconds.
 const PACED_S: f64 = 10.0;
 const READ_S: f64 = 5.0;
-/// Number of devices that are opened and closed.
+/// Number of devices that the check of memory opens and closes.
 const OPENED: usize = 100;
 
-/// After its end, a device must do nothing more.
+/// Checks that a device does nothing more after its end.
 pub(crate) fn finishes(case: &Case) -> CheckResult {
     match case.direction() {
         Direction::Output => finishes_output(case),
@@ -26,7 +27,7 @@ pub(crate) fn finishes(case: &Case) -> CheckResult {
     }
 }
 
-/// All frames must be played, and nothing can be written afterwards.
+/// Checks that all frames are played, and that nothing can be written afterwards.
 fn finishes_output(case: &Case) -> CheckResult {
     let (mut device, _) = case.open_output()?;
     let tone = case.tone(1_000)?;
@@ -51,7 +52,8 @@ fn finishes_output(case: &Case) -> CheckResult {
     Ok(Finding::passed("all frames came out, and writes afterwards are refused"))
 }
 
-/// After its end, the input can be neither read nor started. A second end changes nothing.
+/// Checks that the input can be neither read nor started after its end, and that a second end
+/// changes nothing.
 fn finishes_input(case: &Case) -> CheckResult {
     let mut input = case.started()?;
     read_all(input.as_mut(), 3)?;
@@ -65,7 +67,7 @@ fn finishes_input(case: &Case) -> CheckResult {
     Ok(Finding::passed("nothing is delivered after the end"))
 }
 
-/// Closing without `finish` must leave nothing behind.
+/// Checks that closing without `finish` leaves no file behind.
 pub(crate) fn aborts(case: &Case) -> CheckResult {
     let before = files(case);
     let (mut device, _) = case.open_output()?;
@@ -84,7 +86,7 @@ fn files(case: &Case) -> Vec<String> {
     names.map(|name| name.to_string_lossy().into_owned()).collect()
 }
 
-/// A closed handle must be refused, even after another device was opened.
+/// Checks that a closed handle is refused, even after another device was opened.
 pub(crate) fn handles(case: &Case) -> CheckResult {
     let native = case.native()?;
     let (settings, format) = (case.settings()?, case.format()?);
@@ -124,7 +126,8 @@ pub(crate) fn handles(case: &Case) -> CheckResult {
     Ok(Finding::passed("a closed handle is refused"))
 }
 
-/// The process must not grow with the samples written or read, or as devices are opened and closed.
+/// Checks that the memory of the process does not grow as samples are written or read, or as
+/// devices are opened and closed.
 pub(crate) fn memory(case: &Case) -> CheckResult {
     crate::harness::memory(|| match case.direction() {
         Direction::Output => memory_of_output(case),
@@ -141,7 +144,7 @@ fn memory_of_output(case: &Case) -> Result<[Growth; 2], Finding> {
     let write = |count: usize| (0..count).try_for_each(|_| write_all(device.as_mut(), &tone));
     let written = Growth::measure(blocks, "blocks", write)?;
     drop(device);
-    // Opening and closing a device with a clock takes longer.
+    // A device with a clock takes longer to open and close, so fewer are opened.
     let opened = if can.paced { OPENED / 20 } else { OPENED };
     let open = |count: usize| (0..count).try_for_each(|_| case.open_output().map(drop));
     Ok([written, Growth::measure(opened, "openings", open)?])

@@ -7,7 +7,7 @@ use htex_device::DeviceError;
 
 use crate::device::case::{Case, check_closed, write_all};
 
-/// Samples beyond the limit must be refused, both positive and negative.
+/// Checks that samples beyond the limit are refused, both positive and negative ones.
 pub(crate) fn over(case: &Case) -> CheckResult {
     let Some(limit) = case.capabilities()?.limit else {
         return Ok(Finding::skipped("it has no limit"));
@@ -19,7 +19,7 @@ pub(crate) fn over(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("samples over {limit} are refused, and the output stays at zero")))
 }
 
-/// NaN and infinities must be refused.
+/// Checks that NaN and infinities are refused.
 pub(crate) fn no_number(case: &Case) -> CheckResult {
     for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         refuses(case, sample)?;
@@ -27,7 +27,8 @@ pub(crate) fn no_number(case: &Case) -> CheckResult {
     Ok(Finding::passed("NaN and infinities are refused, and the output stays at zero"))
 }
 
-/// Writes one invalid sample among valid ones. The device must refuse it and be closed afterwards.
+/// Writes one invalid sample among valid ones. Checks that the device refuses it and is closed
+/// afterwards.
 fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     let wrong = |what: String| Err(Finding::failed(format!("a sample of {bad}: {what}")));
     let (mut device, _) = case.open_output()?;

@@ -8,7 +8,7 @@ use crate::harness::{CheckResult, Finding};
 
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
-/// The device must open.
+/// Checks that the device opens.
 pub(crate) fn opens(case: &Case) -> CheckResult {
     match case.direction() {
         Direction::Output => opens_output(case),
@@ -16,8 +16,8 @@ pub(crate) fn opens(case: &Case) -> CheckResult {
     }
 }
 
-/// Rate and channels must be valid and the same at each opening. For a library, they must also be
-/// the same at each call.
+/// Checks that sample rate and channels are valid, and the same each time the input is opened. For
+/// a library, they must also be the same at each call.
 fn opens_input(case: &Case) -> CheckResult {
     let stream = || Ok::<InputStream, Finding>(case.open_input()?.stream().clone());
     let first = stream()?;
@@ -36,7 +36,7 @@ fn opens_input(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{count} channels at {rate_hz} Hz")).with("rate_hz", rate_hz))
 }
 
-/// The output must open at each of its rates, and accept silence.
+/// Checks that the output opens at each of its sample rates, and accepts silence.
 fn opens_output(case: &Case) -> CheckResult {
     let rates = rates(&case.capabilities()?);
     for rate_hz in &rates {
@@ -48,7 +48,7 @@ fn opens_output(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("it opens at {count} rates")).with("rates", count as f64))
 }
 
-/// Rates that the device does not support must be refused.
+/// Checks that sample rates that the device does not support are refused.
 pub(crate) fn bad_rate(case: &Case) -> CheckResult {
     let can = case.capabilities()?;
     let (lowest, highest) = match rates(&can)[..] {
@@ -57,9 +57,9 @@ pub(crate) fn bad_rate(case: &Case) -> CheckResult {
         [] => return Err(Finding::failed("it has no rates")),
     };
     let mut wrong = vec![f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12, 0.5 * lowest, 2.0 * highest];
-    // A rate between two of a list.
+    // A rate between two rates of a list.
     wrong.push(lowest + 0.123);
-    // A range contains some of these rates.
+    // If the device supports a range, it may contain some of these rates.
     wrong.retain(|rate_hz| !can.rates.has(*rate_hz));
     for rate_hz in &wrong {
         match case.open_at(&case.settings()?, *rate_hz) {
@@ -72,7 +72,7 @@ pub(crate) fn bad_rate(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
 }
 
-/// Block sizes outside the ABI's range must be refused.
+/// Checks that block sizes outside the range of the ABI are refused.
 pub(crate) fn bad_block(case: &Case) -> CheckResult {
     let native = case.native()?;
     let rate_hz = case.capabilities()?.default_rate_hz;
@@ -97,7 +97,7 @@ pub(crate) fn bad_block(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{count} wrong block sizes are refused")))
 }
 
-/// Two devices must work at the same time, or the second must be refused as busy.
+/// Checks that two devices work at the same time, or that the second is refused as busy.
 pub(crate) fn two(case: &Case) -> CheckResult {
     match case.direction() {
         Direction::Output => two_outputs(case),
@@ -137,7 +137,7 @@ fn two_inputs(case: &Case) -> CheckResult {
     Ok(Finding::passed("two deliver at the same time"))
 }
 
-/// The second device may be refused, but only as busy.
+/// Checks that the second device was refused as busy, and not with another error.
 fn one_at_a_time(error: DeviceError) -> CheckResult {
     match error {
         DeviceError::Busy(why) => Ok(Finding::passed(format!("one at a time: {why}"))),

@@ -10,14 +10,14 @@ use crate::device::case::{Case, check_closed, read_all};
 /// How much longer than its timeout a read may take.
 const LATE: Duration = Duration::from_millis(500);
 
-/// Nothing can be read before the start, and a second start must change nothing.
+/// Checks that nothing can be read before the start, and that a second start changes nothing.
 pub(crate) fn starts(case: &Case) -> CheckResult {
     let mut input = case.open_input()?;
     let mut samples = vec![0.0; input.stream().channels.len()];
     let early = input.read(&mut samples, Duration::ZERO);
     check_closed([("a read before the start", early.map(drop))])?;
     drop(input);
-    // A new input, because the refused call may have ended the first one.
+    // Opens a new input, because the refused call may have ended the first one.
     let mut input = case.open_input()?;
     input.start()?;
     input.start()?;
@@ -25,7 +25,7 @@ pub(crate) fn starts(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{read} frame after the start")))
 }
 
-/// Blocks of any size must be delivered.
+/// Checks that the input delivers blocks of any size.
 pub(crate) fn blocks(case: &Case) -> CheckResult {
     let mut input = case.started()?;
     let sizes = [1, 7, 64, 193];
@@ -48,7 +48,8 @@ pub(crate) fn blocks(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("{read} frames are delivered")).with("frames", read as f64))
 }
 
-/// A read with a timeout of zero must return at once, and any other read within its timeout.
+/// Checks that a read with a timeout of zero returns at once, and any other read within its
+/// timeout.
 pub(crate) fn timeouts(case: &Case) -> CheckResult {
     let mut input = case.started()?;
     let mut samples = vec![0.0; input.stream().channels.len()];

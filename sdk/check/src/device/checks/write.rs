@@ -7,7 +7,7 @@ use htex_device::Status;
 
 use crate::device::case::{Case, write_all};
 
-/// Blocks of any size must be taken in the end.
+/// Checks that the output takes blocks of any size, possibly in several calls.
 pub(crate) fn blocks(case: &Case) -> CheckResult {
     let (mut device, _) = case.open_output()?;
     let block = case.capabilities()?.block_frames as usize;
@@ -23,7 +23,7 @@ pub(crate) fn blocks(case: &Case) -> CheckResult {
     Ok(Finding::passed(format!("blocks of 0 to {} frames are taken", sizes[3])))
 }
 
-/// Frames and peak must be counted.
+/// Checks that the status counts frames and reports the peak.
 pub(crate) fn status(case: &Case) -> CheckResult {
     let (mut device, _) = case.open_output()?;
     let before = device.status();

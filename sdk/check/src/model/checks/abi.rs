@@ -80,7 +80,7 @@ fn wrong_in(descriptor: &Descriptor) -> Option<String> {
         .or_else(|| wrong_hint(descriptor))
 }
 
-/// Finds a usual range or a value of a sweep that is not allowed.
+/// Returns a description of a usual range or a sweep value that is not allowed, if there is one.
 fn wrong_hint(descriptor: &Descriptor) -> Option<String> {
     let usual_works = |field: &&Field| {
         field.usual.is_none_or(|usual| {

@@ -9,7 +9,7 @@ use crate::model::case::{Case, Fitted};
 const WARM_UP: usize = 64;
 const BLOCKS: usize = 1_000;
 const FRAMES: [usize; 4] = [1, 64, 256, 1_000];
-/// Number of blocks between two retunes.
+/// Number of blocks between two changes of the parameters (retunes).
 const BETWEEN: usize = 4;
 
 /// Checks that rendering and retuning do not allocate.
@@ -96,7 +96,7 @@ fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32])
             "no library of this process calls the C library's allocator by name",
         ));
     }
-    // A new voice allocates as a rule, so this number shows that calls are counted at all.
+    // Usually a new voice allocates. So this number shows whether calls are counted at all.
     let (made, of_a_voice) = allocator.during(|| case.voice(&sets[0].parameters, case.seed));
     drop(made?);
     let (played, calls) = allocator.during(|| play(voice, sets, out, BLOCKS));

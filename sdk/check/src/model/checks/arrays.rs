@@ -11,8 +11,8 @@ use crate::model::spectra::REFERENCES;
 const FRAMES: [usize; 5] = [1, 7, 64, 500, 4_097];
 const SAMPLES: usize = 2_000;
 
-/// Checks how far texts and parameters are written, what is read, and that no array is kept after
-/// the call.
+/// Checks that calls write texts and parameters only within the given arrays, that they read only
+/// these arrays, and that they keep no array after the call.
 pub(crate) fn kept_to(case: &Case) -> CheckResult {
     watch(case);
     let parameters = fits(case)?;
@@ -28,17 +28,17 @@ pub(crate) fn kept_to(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("refused", refused as f64))
 }
 
-/// Makes a native library's call that touches memory behind an array fail with the array's name.
-/// WASM modules need no watching: their engine has its own signal handler, and the limits of the
-/// checks put guards into the module's memory.
+/// Watches the calls of a native library. A call that touches memory behind an array then fails
+/// with a finding that names the array. WASM modules are not watched, because their engine has its
+/// own signal handler. Instead, the limits of the checks put guard values into the module's memory.
 fn watch(case: &Case) {
     if !matches!(case.model.origin(), Origin::Wasm(_)) {
         fence::watch();
     }
 }
 
-/// Calls with every capacity that is worth trying. Each call must return the same length, write the
-/// beginning of the same values, and write nothing beyond the capacity.
+/// Calls a function with all interesting capacities. Each call must return the same length, write
+/// the beginning of the same values, and write nothing beyond the capacity.
 fn capacities<T: Number>(
     call: &'static str,
     whole: &[T],
@@ -108,7 +108,7 @@ fn descriptors(case: &Case) -> Result<(), Finding> {
     capacities("descriptor", &whole, |out| case.model.descriptor_into(out))
 }
 
-/// Checks that one magnitude is written for each frequency, and nothing beyond.
+/// Checks that the model writes one magnitude for each frequency, and nothing beyond.
 pub(crate) fn magnitudes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     watch(case);
     let grid = Band::TACTILE.grid_hz();
@@ -138,7 +138,7 @@ fn mixes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     by.unchanged(&weights, "weights")
 }
 
-/// Tests null and misaligned arrays on a native library. Returns how many were refused.
+/// Passes null and misaligned arrays to a native library. Returns how many the library refused.
 fn unusable(case: &Case, parameters: &[f64]) -> Result<usize, Finding> {
     let grid = Band::TACTILE.grid_hz();
     let spectrum: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
@@ -167,8 +167,7 @@ pub(crate) fn blocks(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let mut given = Fenced::input(parameters, "voice_new", "parameters");
     let mut voice = case.voice(given.get(), case.seed)?;
     given.unchanged(parameters, "parameters")?;
-    // The arrays live until the end, so that `keeps_nothing` is the check that finds and names a
-    // voice that keeps one.
+    // The arrays live until the end. So if a voice keeps an array, only `keeps_nothing` finds this.
     let mut lent = vec![given];
     for frames in FRAMES {
         let mut out = Fenced::output(frames, "voice_render", "frames");
@@ -193,7 +192,7 @@ fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
         let mut next = Fenced::input(&other, "voice_retune", "parameters");
         let part = |voice: &mut ModelVoice, array: &mut Fenced<f64>, out: &mut [f32]| {
             if scrub {
-                // NaN reaches the samples if the voice still reads the array.
+                // If the voice still reads the array, NaN reaches the samples.
                 array.get().fill(f64::NAN);
             }
             voice.render(out)
@@ -207,7 +206,7 @@ fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let [left, again, scrubbed] = [play(false)?, play(false)?, play(true)?];
     match first_difference(&left, &scrubbed) {
         None => Ok(()),
-        // Another check reports voices that are not reproducible.
+        // Another check reports a voice that is not reproducible.
         Some(_) if first_difference(&left, &again).is_some() => Ok(()),
         Some(at) => Err(Finding::failed(format!(
             "sample {at} changes when the arrays of parameters change after the call: an array is lent for the call only"

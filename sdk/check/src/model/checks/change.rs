@@ -9,10 +9,11 @@ use crate::model::signal::{distance_db, sharpest_bend};
 const SAMPLES: usize = 40_000;
 /// Number of samples between two retunes.
 const BETWEEN: usize = 500;
-/// Largest allowed second difference around a retune, relative to the sounds without retunes.
+/// Largest allowed second difference of the samples around a retune, relative to the sounds without
+/// retunes.
 const SHARPER: f32 = 2.0;
-/// Minimum distance between two magnitudes for measuring a retune from one to the other, dB RMS. It
-/// is three times the allowed error of a sound.
+/// Minimum distance between two spectra, dB RMS, so that a retune from one to the other can be
+/// measured. It is three times the allowed error of a sound.
 const APART_DB: f64 = 3.0;
 /// Largest allowed sample in a sound of unit RMS.
 const LOUDEST: f32 = 100.0;
@@ -63,7 +64,7 @@ pub(crate) fn follows(case: &Case) -> CheckResult {
     for i in 1..=sets.len() {
         let (before, now) = (i - 1, i % sets.len());
         stream.retune(&sets[now].parameters)?;
-        // What the old parameters left fades out in this second.
+        // During this second, the sound of the old parameters fades out.
         stream.render(&mut settling)?;
         let apart = distance_db(&magnitudes[before], &magnitudes[now]);
         if apart.is_nan() || apart < APART_DB {
@@ -117,7 +118,7 @@ pub(crate) fn interpolate(case: &Case) -> CheckResult {
                 10 => b,
                 _ => continue,
             };
-            // Bits are compared, so that -0 is not taken for 0.
+            // Bits are compared, so that -0 and 0 are different.
             let bits = |set: &[f64]| set.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             if bits(&mix) != bits(end) {
                 let what = format!("{mix:?} is not the set {end:?}; it must be, to the bit");

@@ -1,4 +1,4 @@
-//! Checks of fits, and of converting their parameters.
+//! Checks of fits, and of the conversion of fitted parameters.
 
 use htex_host::{Band, HostError, Status};
 use htex_model::{Values, flatten};
@@ -9,7 +9,7 @@ use crate::model::sets::stored;
 use crate::model::signal::distance_db;
 use crate::model::spectra::{HARD, REFERENCES};
 
-/// Change of a spectrum by storage that causes a warning, dB RMS.
+/// If storing the parameters changes the spectrum by more than this, there is a warning, dB RMS.
 const STORED_DB: f64 = 0.5;
 
 /// Fits the five reference spectra.

@@ -1,8 +1,8 @@
-//! Checks random use of voices within the contract.
+//! Checks random but valid use of voices.
 //!
-//! A seed determines parameters, a band, a rate and a sequence of blocks, retunes, mixes and
-//! motions. The sequence is played twice, divided into different blocks. The samples must be finite
-//! and the same both times. A failure names its seed, which reproduces it.
+//! A seed determines parameters, a band, a sample rate and a sequence of blocks, retunes, mixes and
+//! motions. The sequence is played twice, divided into different blocks. The samples must be
+//! finite, and the same both times. A failure names its seed, so that it can be reproduced.
 
 use std::time::Instant;
 
@@ -30,7 +30,8 @@ const LOUDEST: f32 = 1e4;
 enum Step {
     Render(usize),
     Retune(Vec<f64>),
-    /// Retune to a mix of two concatenated sets, with the weight of the second.
+    /// Retune to a mix of two parameter sets, which are concatenated. The number is the weight of
+    /// the second set.
     Mix(Vec<f64>, f64),
     Move(Motion),
 }
@@ -61,8 +62,8 @@ fn by_seed(finding: Finding, seed: u64) -> Finding {
     Finding { message, ..finding }.with("seed", seed as f64)
 }
 
-/// Prints the finding that holds if the process ends now. The runner uses the last finding that it
-/// reads.
+/// Prints the finding that applies if the process crashes now. The runner uses the last finding
+/// that it reads.
 fn announce(seed: u64) {
     let finding = Finding::new(Outcome::Crashed, "it ends the process, or does not return");
     if let Ok(line) = serde_json::to_string(&by_seed(finding, seed)) {
@@ -90,7 +91,7 @@ fn sequence(case: &Case, fitted: &[Vec<f64>], seed: u64) -> Result<bool, Finding
     let what = || format!("{first:?} in {low_hz} to {high_hz} Hz at {rate_hz} Hz");
     let wrong = |f: Finding| Finding::failed(format!("{}: {}", what(), f.message));
     let whole = play(&mut Random::new(0)).map_err(wrong)?;
-    // Not the seed itself, because its numbers have drawn the steps.
+    // The seed itself is not used, because its random numbers already determined the steps.
     let cut = play(&mut Random::new(seed ^ 0x5bd1_e995)).map_err(wrong)?;
     match first_difference(&whole, &cut) {
         None => Ok(true),
@@ -127,8 +128,8 @@ fn steps(case: &Case, fitted: &[Vec<f64>], random: &mut Random) -> Result<Vec<St
     Ok(steps)
 }
 
-/// Returns a motion in range: usually a typical motion of a finger, sometimes one at the end of a
-/// range.
+/// Returns a random valid motion. Usually it is a typical motion of a finger, sometimes one at an
+/// end of the valid range.
 fn motion(random: &mut Random) -> Motion {
     let mut number = |usual: f64, most: f64| match random.below(8) {
         0 => most,
@@ -144,7 +145,7 @@ fn motion(random: &mut Random) -> Motion {
     }
 }
 
-/// Plays steps. If the seed `cut` is above 0, it divides the blocks into parts.
+/// Plays steps. Unless `cut` is the generator with seed 0, it divides the blocks into random parts.
 fn play(
     case: &Case,
     voice: &mut ModelVoice,
@@ -153,7 +154,7 @@ fn play(
 ) -> Result<Vec<f32>, Finding> {
     let mut buffer = vec![0.0; case.model.most_parameters()];
     let mut all: Vec<f32> = Vec::new();
-    // A generator does not tell its seed, so its next number is compared.
+    // The seed of a generator cannot be read, so the next random number is compared.
     let is_cut = cut.clone().bits() != Random::new(0).bits();
     for step in steps {
         let changed = match step {

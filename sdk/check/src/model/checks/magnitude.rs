@@ -28,7 +28,7 @@ pub(crate) fn sane(case: &Case) -> CheckResult {
         let say = |what: String| Finding::failed(format!("spectrum `{reference}`: {what}"));
         let mut largest: f64 = 0.0;
         for grid in [band.grid_hz(), fine_grid()] {
-            // The host itself refuses magnitudes that are negative or not finite.
+            // The host itself returns an error for magnitudes that are negative or not finite.
             let magnitude = case
                 .model
                 .magnitude(&parameters, band, &grid)
@@ -83,7 +83,8 @@ pub(crate) fn grid(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("relative_difference", worst))
 }
 
-/// Requests chunks of the grid, each in descending order, and reorders the results.
+/// Requests the grid in chunks, with the frequencies of each chunk in descending order. Returns the
+/// magnitudes in the order of the grid.
 fn by_chunks<E>(
     grid: &[f64],
     len: usize,

@@ -92,8 +92,8 @@ fn refused(
     }
 }
 
-/// Checks that a constant motion gives the same samples for all block sizes, whether or not it is
-/// set again.
+/// Checks that a constant motion gives the same samples for all block sizes, and also if the motion
+/// is set again.
 fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let render = |block: usize| -> Result<Vec<f32>, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -168,8 +168,8 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
     Ok(voice.render(&mut out)?)
 }
 
-/// Checks fits at known, partly known and unknown conditions. An unknown condition is what a host
-/// without the extension passes.
+/// Checks fits at known, partly known and unknown conditions. A host without the extension passes
+/// an unknown condition.
 fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
     let known = |speed_mm_s, force_n| FitCondition { speed_mm_s, force_n };
     let conditions = [
@@ -192,7 +192,7 @@ fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
     }
     for (speed_mm_s, force_n) in [(-1.0, 0.4), (80.0, -1.0), (f64::INFINITY, 0.4)] {
         let condition = known(Some(speed_mm_s), Some(force_n));
-        // CANNOT_FIT is about the spectrum, so the condition was accepted before.
+        // CANNOT_FIT concerns only the spectrum, so the model accepted the condition before.
         let taken = REFERENCES.iter().find(
             |reference| !matches!(case.fit_at(reference, condition), Err(e) if !is_cannot_fit(&e)),
         );

@@ -11,9 +11,10 @@ const SECONDS: f64 = 10.0;
 const BETWEEN: usize = 64;
 /// Allowed difference in level from the sound without retunes, dB.
 const LEVEL_DB: f64 = 0.5;
-/// Allowed difference in level, in standard deviations of the level of such noise.
+/// Allowed difference in level, in standard deviations of the level of noise of this duration and
+/// spectrum.
 const SPREADS: f64 = 4.0;
-/// Allowed increase of the distance to the magnitude, dB RMS.
+/// Allowed increase of the distance between the sound's spectrum and the magnitude, dB RMS.
 const FURTHER_DB: f64 = 1.0;
 
 /// Checks that retuning to the same parameters at every block changes neither the level nor the

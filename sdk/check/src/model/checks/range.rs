@@ -1,4 +1,5 @@
-//! Checks over the whole range of the parameters: bounds, seeded sets, and fits with signals.
+//! Checks over the whole range of the parameters: at the bounds, for random sets from a seed, and
+//! for fits with signals.
 
 use htex_host::{Band, Stream};
 
@@ -12,13 +13,14 @@ use crate::model::signal::{rms, rms_spread_at};
 const SECONDS: f64 = 4.0;
 /// Allowed difference of a level from 1, dB.
 const LEVEL_DB: f64 = 3.0;
-/// Allowed difference of a level from 1, in standard deviations of the level of such noise.
+/// Allowed difference of a level from 1, in standard deviations of the level of noise of this
+/// duration and spectrum.
 const SPREADS: f64 = 8.0;
 /// Largest allowed sample in a sound of unit RMS.
 const LOUDEST: f32 = 1_000.0;
 /// Number of samples between two retunes.
 const BETWEEN: usize = 1_000;
-/// Additional bands, in which a sound is only searched for samples that are not finite.
+/// Additional bands. In these, a sound is only searched for samples that are not finite.
 const BANDS: [Band; 3] = [
     Band { low_hz: 20.0, high_hz: 200.0 },
     Band { low_hz: 150.0, high_hz: 700.0 },
@@ -51,7 +53,7 @@ pub(crate) fn bounds(case: &Case) -> CheckResult {
     Ok(summary(played, refused))
 }
 
-/// Checks seeded sets within the ranges, and fits of spectra with their signals.
+/// Checks random sets within the ranges, and fits of spectra with their signals.
 pub(crate) fn seeded(case: &Case) -> CheckResult {
     let fitted = case.fitted()?;
     let mut sets = case.fitted_to_signals()?;
@@ -79,7 +81,7 @@ fn summary(played: usize, refused: usize) -> Finding {
     Finding::passed(message).with("played", played as f64).with("refused", refused as f64)
 }
 
-/// Returns the set as it would be read from a file.
+/// Returns the set as it would be read back from a file.
 fn as_stored(case: &Case, set: &Set) -> Result<Set, Finding> {
     let fields = case.model.descriptor().fields.iter();
     let lists = case.lists(&set.parameters)?;
@@ -99,7 +101,7 @@ fn plays(case: &Case, set: &Set) -> Result<(), Finding> {
     let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
     render(case, set, Band::TACTILE, &mut out)?;
     let level_db = 20.0 * rms(&out).log10();
-    // Lines may be far narrower than the 5 Hz of the usual grid.
+    // Spectral lines may be far narrower than the 5 Hz steps of the usual grid.
     let spread = rms_spread_at(&magnitude, FINE_HZ, SECONDS);
     let spread_db = 20.0 * (1.0 + SPREADS * spread).log10();
     let allowed_db = LEVEL_DB.max(spread_db);

@@ -11,7 +11,7 @@ use crate::model::spectra::REFERENCES;
 /// The host's message if a model gives no reason.
 const NO_REASON: &str = "no reason given";
 
-/// Fails unless a call returned this status with a reason.
+/// Fails unless a call returned this status and gave a reason.
 fn refused<T>(
     status: Status,
     call: &str,
@@ -77,7 +77,8 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
     ];
     let mut at = 0;
     for (i, field) in descriptor.fields.iter().enumerate() {
-        // A range of one value has no width, and the number must still leave it.
+        // At least 1, because a range of one value has no width, and the number must be outside of
+        // it.
         let span = (field.max - field.min).max(1.0);
         let wrong = [field.min - span, field.max + span, f64::NAN, f64::INFINITY];
         for number in wrong.into_iter().filter(|_| !lists[i].is_empty()) {
@@ -93,7 +94,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
                 set[at] = len;
                 broken.push((format!("`{}` of length {len}", field.name), set));
             }
-            // A list is stored behind its length.
+            // A list is stored after its length.
             at += 1;
         }
         at += lists[i].len();
@@ -248,7 +249,7 @@ pub(crate) fn weights(case: &Case) -> CheckResult {
         refused(Status::InvalidArgument, "interpolate", &what, told)?;
     }
     for (what, set) in broken_sets(case, &good)? {
-        // A set of another length could be mistaken for the beginning of the next one.
+        // The beginning of the next set could be mistaken for the end of a set of another length.
         if set.len() == good.len() {
             let told = case.model.interpolate(&[&good, &set], &[0.5, 0.5]);
             refused(Status::InvalidParameters, "interpolate", &what, told)?;

@@ -72,8 +72,7 @@ pub(crate) fn seeds(case: &Case) -> CheckResult {
     Err(Finding::failed("two seeds give equal samples: the seed is ignored"))
 }
 
-/// Checks that voices that play at the same time have the same samples as when each plays by
-/// itself.
+/// Checks that voices that play at the same time have the same samples as when each plays alone.
 pub(crate) fn voices_apart(case: &Case) -> CheckResult {
     let sets = case.two_sets()?;
     let (a, b) = match sets {

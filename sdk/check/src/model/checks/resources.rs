@@ -10,7 +10,7 @@ use crate::model::case::{Case, RATE_HZ};
 const BLOCK: usize = 256;
 const BLOCKS: usize = 10_000;
 const VOICES: usize = 2_000;
-/// Load of one processor above which there is a warning.
+/// Fraction of one processor's time above which there is a warning.
 const BUDGET: f64 = 0.1;
 
 /// Checks that memory does not grow while a voice plays, or while voices are created and freed.

@@ -18,7 +18,7 @@ pub(crate) const SECONDS: f64 = 60.0;
 const SEARCHED: usize = 20;
 /// Allowed relative error of an RMS.
 const LEVEL: f64 = 0.02;
-/// Allowed deviation of noise, in standard deviations.
+/// Allowed deviation of the level of noise, in standard deviations.
 const SPREADS: f64 = 4.0;
 /// Allowed distance of the sound's spectrum from the magnitude, dB RMS.
 pub(crate) const SPECTRUM_DB: f64 = 1.0;
@@ -30,8 +30,8 @@ fn about(fitted: &Fitted, what: &str) -> Finding {
 /// A band narrower than the one in which references are fitted. Two references have peaks outside
 /// it.
 const NARROW: Band = Band { low_hz: 150.0, high_hz: 700.0 };
-/// Allowed difference of the level in that band from 1, dB. A band filter of order 4 passes that
-/// much outside the band.
+/// Allowed difference of the level in the narrow band from 1, dB. A band filter of order 4 passes
+/// this much outside the band.
 const NARROW_DB: f64 = 1.5;
 
 /// Renders one second of every reference.
@@ -82,14 +82,14 @@ fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     Ok(out)
 }
 
-/// Checks the unit RMS of the magnitude and of the sound, in total or in the band's bins.
+/// Checks that the magnitude and the sound have an RMS of 1, in total or in the bins of the band.
 pub(crate) fn level(case: &Case) -> CheckResult {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let sound = listen(case, &fitted)?;
         let (told, read) = (level_rms(&magnitude), level_rms(&measured_spectrum(&sound)));
-        // The sound in total or in the band's bins, whichever is nearer to 1.
+        // Uses the RMS of the whole sound or of the band's bins, whichever is nearer to 1.
         let in_all = rms(&sound);
         let is_nearer = (read - 1.0).abs() < (in_all - 1.0).abs();
         let heard = if is_nearer { read } else { in_all };
@@ -111,9 +111,9 @@ pub(crate) fn level(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("sound_rms_error", worst))
 }
 
-/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, or from the spectrum that the
-/// window measures for noise with that density, dB RMS. The second comparison is needed because at
-/// the band's edge, the window blurs a flank by more than the allowed distance.
+/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, dB RMS, or from the spectrum
+/// that the window measures for noise with this density. The second comparison is needed because
+/// the window blurs a steep flank at the edge of the band by more than the allowed distance.
 pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
     let heard = measured_spectrum(sound);
     let blurred = distance_db(&heard, &read_as_noise(magnitude));
@@ -139,7 +139,8 @@ pub(crate) fn spectrum(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("distance_db", worst))
 }
 
-/// Checks unit RMS in a band narrower than the band of the fit, and silence outside it.
+/// Checks that the RMS is 1 in a band that is narrower than the band of the fit, and that there is
+/// silence outside it.
 pub(crate) fn narrow_band(case: &Case) -> CheckResult {
     let grid = NARROW.grid_hz();
     let (mut worst, mut voices) = (0.0f64, 0.0);

@@ -6,7 +6,7 @@ use crate::harness::{CheckResult, Finding};
 use crate::model::case::Case;
 use crate::model::signal::first_difference;
 
-/// Number of voices, one more than fit into a call.
+/// Number of voices. It is one more than fit into a call.
 const VOICES: usize = 17;
 const FRAMES: [usize; 5] = [1, 256, 3, 64, 500];
 /// The block before which one voice is retuned.
@@ -46,7 +46,7 @@ fn unusable_handles(case: &Case) -> Result<(), Finding> {
     }
 }
 
-/// Checks that one common call gives the same samples as separate calls.
+/// Checks that one call for all voices gives the same samples as separate calls.
 pub(crate) fn agrees(case: &Case) -> CheckResult {
     if !case.model.has_extension(VOICES_EXTENSION)? {
         return Ok(Finding::passed(format!("the model has no extension `{VOICES_EXTENSION}`")));

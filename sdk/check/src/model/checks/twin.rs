@@ -34,7 +34,7 @@ pub(crate) fn agrees(case: &Case) -> CheckResult {
         if a.parameters.len() != b.parameters.len() {
             return Err(say("the two models have different numbers of parameters"));
         }
-        // The floor is for parameters that are 0 in both.
+        // The lower limit is for parameters that are 0 in both.
         let relative = |(a, b): (&f64, &f64)| (a - b).abs() / a.abs().max(b.abs()).max(1e-12);
         let pairs = a.parameters.iter().zip(&b.parameters);
         fits = pairs.map(relative).fold(fits, f64::max);
@@ -55,8 +55,8 @@ pub(crate) fn agrees(case: &Case) -> CheckResult {
     Ok(finding.with("parameter_difference", fits).with("sample_difference", sounds))
 }
 
-/// Returns the other file if it was given, or else the file of the other kind in the same folder.
-/// `libNAME.so`, `NAME.so` and `NAME.wasm` are taken to be the same model.
+/// Returns the other file if it was given. Otherwise returns the file of the other kind in the same
+/// folder: `libNAME.so`, `NAME.so` and `NAME.wasm` count as the same model.
 fn other_file(case: &Case) -> Option<PathBuf> {
     if let Some(file) = &case.against {
         return Some(file.clone());

@@ -7,17 +7,18 @@ use crate::model::case::Case;
 
 const BLOCKS: usize = 2_000;
 const FRAMES: [usize; 3] = [64, 1, 256];
-/// Number of waits that are allowed, because the system may take a processor away in a page fault.
+/// Number of waits that are allowed. Some must be, because a page fault may make the system suspend
+/// the thread.
 const WAITS: u64 = 8;
 
-/// Counters of this thread: waits, and calls that read or write.
+/// Counters of this thread: its waits, and its calls that read or write.
 #[derive(Clone, Copy)]
 struct Counts {
     waits: u64,
     transfers: u64,
 }
 
-/// Checks that rendering, retunes and motions do not wait, read or write.
+/// Checks that rendering, retuning and setting a motion do not wait, read or write files.
 pub(crate) fn none(case: &Case) -> CheckResult {
     if Counts::now().is_none() {
         return Ok(Finding::skipped("waits of a thread are counted on Linux only"));
@@ -39,7 +40,7 @@ pub(crate) fn none(case: &Case) -> CheckResult {
         Ok(())
     };
     play(&mut voice, 64)?;
-    // Reading the counters is itself a read. A second reading shows how much it adds.
+    // Reading the counters itself counts as reads. A second reading shows how many.
     let (first, second) = (counts()?, counts()?);
     play(&mut voice, BLOCKS)?;
     let last = counts()?;
@@ -73,7 +74,7 @@ fn counts() -> Result<Counts, Finding> {
 }
 
 impl Counts {
-    /// Returns the current counts; `None` if the system does not have these files.
+    /// Returns the current counts, or `None` if the system does not have these files.
     fn now() -> Option<Self> {
         let value = |text: &str, key: &str| -> Option<u64> {
             let line = text.lines().find_map(|line| line.strip_prefix(key))?;

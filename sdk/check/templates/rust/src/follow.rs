@@ -1,4 +1,4 @@
-//! A voice that follows the finger itself, by the extension `htex.motion/1`: a host then scales
+//! A voice that follows the finger itself, by the extension `htex.motion/1`. A host then scales
 //! neither frequencies with the speed nor the level with the force.
 //!
 //! In this template the level is proportional to the speed, and 1 at 100 mm/s. A model may also use

@@ -1,9 +1,9 @@
 //! {{LABEL}} ({{ID}}), initially one resonance. The model plays noise with the spectrum of a
 //! two-pole band-pass filter, `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`.
 //!
-//! `cargo build --release` builds the native library, and with `--target wasm32-unknown-unknown`
-//! the WASM module, which does not link the standard library and is therefore small enough for an
-//! asset.
+//! `cargo build --release` builds the native library. With `--target wasm32-unknown-unknown` it
+//! builds the WASM module, which does not link the standard library, so that it is small enough to
+//! embed in an asset.
 #![no_std]
 
 extern crate alloc;

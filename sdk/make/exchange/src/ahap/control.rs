@@ -1,4 +1,5 @@
-//! The controls of a file over time, and how they change its events.
+//! The two controls of an `.ahap` file (intensity and sharpness) over time, and how they change its
+//! events.
 
 use super::{
     ControlPoint, Entry, Event, INTENSITY, INTENSITY_CONTROL, SHARPNESS, SHARPNESS_CONTROL,
@@ -7,7 +8,7 @@ use crate::curve::{Point, side, value_at};
 use crate::pattern::{Pattern, Transient};
 use crate::profile::Profile;
 
-/// Both controls.
+/// The intensity control and the sharpness control.
 pub(super) struct Controls {
     intensity: Control,
     sharpness: Control,
@@ -26,7 +27,7 @@ impl Controls {
         self.intensity.during(event).len() + self.sharpness.during(event).len()
     }
 
-    /// The vibration of a continuous event.
+    /// Returns the vibration of a continuous event.
     pub(super) fn pattern(&self, event: &Event, profile: &Profile) -> Pattern {
         Pattern {
             from_s: event.time,
@@ -47,20 +48,20 @@ impl Controls {
     }
 }
 
-/// The level of an event as a function of its control. The event's parameters are looked up once,
-/// not at each point.
+/// Returns the level of an event as a function of the intensity control. The event's parameters are
+/// looked up only once, not at each point.
 fn level(event: &Event) -> impl Fn(f64) -> f64 {
     let intensity = event.parameter(INTENSITY, 1.0);
     move |control| (intensity * control).clamp(0.0, 1.0)
 }
 
-/// The frequency of an event in hertz, as a function of its control.
+/// Returns the frequency of an event, hertz, as a function of the sharpness control.
 fn hertz(event: &Event, profile: &Profile) -> impl Fn(f64) -> f64 {
     let sharpness = event.parameter(SHARPNESS, 0.5);
     move |control| profile.hertz_of((sharpness + control).clamp(0.0, 1.0))
 }
 
-/// A control over time, with its value before its first point.
+/// The values of a control over time, including its value before the first point.
 struct Control {
     points: Vec<Point>,
     usual: f64,
@@ -70,8 +71,8 @@ impl Control {
     fn new(entries: &[Entry], id: &str, usual: f64) -> Self {
         let mut curves: Vec<Vec<Point>> =
             entries.iter().filter_map(|entry| own_curve(entry, id)).collect();
-        // Files may list curves in any order. The sort is stable: of equal starts, the later entry
-        // comes last.
+        // Files may list curves in any order. The sort is stable, so curves with equal starts stay
+        // in the order of the file.
         curves.sort_by(|a, b| start_s(a).total_cmp(&start_s(b)));
         let mut points: Vec<Point> = Vec::new();
         for curve in curves {
@@ -97,15 +98,15 @@ impl Control {
         }
     }
 
-    /// The control's points during an event and at its ends; `made` converts each value to the
-    /// event's level or frequency.
+    /// Returns the control's points during an event, and at the start and end of the event. `made`
+    /// converts each value to the event's level or frequency.
     fn over(&self, event: &Event, made: impl Fn(f64) -> f64) -> Vec<Point> {
         let (from_s, to_s) = (event.time, event.end_s());
         let point = |time_s: f64, control: f64| Point::new(time_s, made(control));
         let mut over = vec![point(from_s, self.value_at(from_s))];
         let first = self.points.first();
         for (index, p) in self.during(event).iter().enumerate() {
-            // At the control's first point, its value jumps there from the usual value.
+            // At the control's first point, its value jumps from the default value.
             let begins = index == 0 && first.is_some_and(|first| first.time_s == p.time_s);
             if begins && self.usual != p.value {
                 over.push(point(p.time_s, self.usual));
@@ -113,7 +114,8 @@ impl Control {
             over.push(point(p.time_s, p.value));
         }
         let end = match first {
-            // The value just before the end: a jump at the end belongs to the next event.
+            // Takes the value just before the end, because a jump at the end belongs to the next
+            // event.
             Some(first) if first.time_s < to_s => {
                 side(&self.points, to_s, true).unwrap_or(self.usual)
             }
@@ -123,7 +125,7 @@ impl Control {
         over
     }
 
-    /// The points between the ends of an event.
+    /// Returns the points between the start and the end of an event.
     fn during(&self, event: &Event) -> &[Point] {
         let from = self.points.partition_point(|p| p.time_s <= event.time);
         let to = self.points.partition_point(|p| p.time_s < event.end_s());
@@ -131,7 +133,7 @@ impl Control {
     }
 }
 
-/// The points of an entry that changes the control `id`, at their absolute times.
+/// Returns the points of an entry, with absolute times, if the entry changes the control `id`.
 fn own_curve(entry: &Entry, id: &str) -> Option<Vec<Point>> {
     match entry {
         Entry::ParameterCurve(curve) if curve.id == id => {

@@ -1,13 +1,14 @@
-//! Reader and writer of Apple's Core Haptics files, `.ahap` version 1: continuous and transient
-//! events, and curves of control points that change them.
+//! Reads and writes Apple's Core Haptics files, `.ahap` version 1. A file has continuous events and
+//! transient events, and curves of control points that change the events.
 //!
-//! Written from Apple's documentation (*Representing haptic patterns in AHAP files*;
-//! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). An intensity control multiplies, a
-//! sharpness control adds. A control applies to all events from its first point on and is linear
-//! between points; the times of the points count from the start of the curve. Apple does not define
-//! what an intensity or a sharpness is. Here an intensity is the square root of an amplitude, as in
-//! Meta's conversion (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness
-//! is the position in a range of frequencies, as in the reference software of ISO/IEC 23090-31.
+//! The code follows Apple's documentation (*Representing haptic patterns in AHAP files*;
+//! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). The intensity control multiplies the
+//! intensity of events, and the sharpness control is added to their sharpness. A control applies to
+//! all events from its first point on, and is linear between points. The times of the points count
+//! from the start of their curve. Apple does not define what an intensity or a sharpness is. Here
+//! an intensity is the square root of an amplitude, as in Meta's conversion
+//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk). A sharpness is a position in a
+//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
 
 mod control;
 #[cfg(feature = "export")]
@@ -24,7 +25,8 @@ use crate::pattern::{MOST_S, Pattern, rendered_of_file};
 use crate::profile::Profile;
 use control::Controls;
 
-/// Longest continuous event, seconds (documentation of `CHHapticEvent.EventType.hapticContinuous`).
+/// Longest allowed continuous event, seconds (documentation of
+/// `CHHapticEvent.EventType.hapticContinuous`).
 pub(crate) const LONGEST_EVENT_S: f64 = 30.0;
 /// Largest number of control points that are written into one curve.
 pub(crate) const POINTS_OF_A_CURVE: usize = 16;
@@ -76,7 +78,7 @@ pub struct Value {
     pub value: f64,
 }
 
-/// A control that changes its value at once.
+/// A new value of a control, which takes effect at once.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     #[serde(rename = "ParameterID")]
@@ -87,12 +89,12 @@ pub struct Parameter {
     pub time: f64,
 }
 
-/// A control that follows straight lines between points.
+/// Values of a control over time: straight lines between points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     #[serde(rename = "ParameterID")]
     pub id: String,
-    /// Start of the curve, seconds; the times of its points count from here.
+    /// Start of the curve, seconds. The times of its points count from here.
     #[serde(rename = "Time")]
     pub time: f64,
     #[serde(rename = "ParameterCurveControlPoints")]
@@ -106,10 +108,10 @@ pub struct ControlPoint {
     pub parameter_value: f64,
 }
 
-/// Largest number of curve points during events. A point counts once for each event that it
+/// Largest allowed number of curve points during events. A point counts once for each event that it
 /// changes.
 const MOST_POINTS: usize = 1_000_000;
-/// Largest total duration of all events, seconds.
+/// Largest allowed total duration of all events, seconds.
 const MOST_TOGETHER_S: f64 = 4_000.0;
 
 const INTENSITY: &str = "HapticIntensity";
@@ -121,8 +123,8 @@ impl Ahap {
     /// Reads an `.ahap` file.
     ///
     /// # Errors
-    /// When it is not JSON, has another version or structure, or a number is out of range. The
-    /// fault names the place.
+    /// When the file is not JSON, has another version or structure, or a number is out of range.
+    /// The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let ahap: Self = json::read(bytes)?;
         if ahap.version != 1.0 {
@@ -141,7 +143,7 @@ impl Ahap {
         json::written(self)
     }
 
-    /// What the reader ignores in this file, each as a sentence.
+    /// Returns what the reader ignores in this file, as a list of sentences.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let events = || self.events();
@@ -182,7 +184,7 @@ impl Ahap {
         continuous.chain(pulses).collect()
     }
 
-    /// Refuses events and curves that would together take too long to play.
+    /// Returns a fault if the events and curves together would take too much time to render.
     fn check_work(&self) -> Result<(), Fault> {
         let controls = Controls::new(&self.pattern);
         let points: usize = self.events().map(|event| controls.points_during(event)).sum();
@@ -198,7 +200,7 @@ impl Ahap {
 }
 
 impl Entry {
-    /// The control that this entry changes, if it changes one.
+    /// Returns the control that this entry changes, if any.
     fn control(&self) -> Option<&str> {
         match self {
             Self::Event(_) => None,

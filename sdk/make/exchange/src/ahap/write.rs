@@ -1,4 +1,4 @@
-//! Writing a vibration as an `.ahap` file.
+//! Writes a vibration as an `.ahap` file.
 
 use super::{
     Ahap, ControlPoint, Curve, Entry, Event, EventType, INTENSITY, INTENSITY_CONTROL,
@@ -9,10 +9,10 @@ use crate::pattern::{Pattern, Transient};
 use crate::profile::Profile;
 
 impl Ahap {
-    /// Makes a file from a vibration whose levels are amplitudes: curves of at most
-    /// 16 points over events of at most 30 s. The controls also
-    /// change transients, so a transient's intensity is divided by the control's value there; the
-    /// result is at most 1.
+    /// Makes a file from a vibration whose levels are amplitudes. The file has curves of at most 16
+    /// points, and events of at most 30 s. The curves also change transients. To undo this, the
+    /// intensity of a transient is divided by the value of the curve at its time; the result is at
+    /// most 1.
     #[must_use]
     pub fn from_pattern(pattern: &Pattern, profile: &Profile) -> Self {
         let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));
@@ -40,11 +40,11 @@ impl Ahap {
     }
 }
 
-/// Splits a curve into parts. Each part begins with the last point of the previous one, because a
-/// control keeps its value between curves.
+/// Splits a curve into parts. Each part begins with the last point of the previous part. Otherwise
+/// the control would keep its value between the parts instead of following the line.
 fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
-    // The last point of a curve is the first of the next one, or the control would stand still
-    // between them.
+    // The last point of a curve is also the first point of the next one. Otherwise the control
+    // would stand still between them.
     let step = POINTS_OF_A_CURVE - 1;
     let count = points.len().saturating_sub(1).div_ceil(step).max(1);
     let part = |index: usize| {
@@ -69,8 +69,8 @@ fn events(from_s: f64, to_s: f64) -> impl Iterator<Item = Entry> {
             time,
             event_type: EventType::HapticContinuous,
             event_duration: Some((to_s - time).min(LONGEST_EVENT_S)),
-            // Controls multiply the intensity and are added to the sharpness, so the curves alone
-            // decide.
+            // Controls multiply the intensity and are added to the sharpness. With 1 and 0 here,
+            // only the curves determine both.
             event_parameters: parameters(1.0, 0.0),
         })
     })
@@ -86,7 +86,8 @@ fn transient(t: &Transient, levels: &[Point], parts: &[Point], profile: &Profile
         Some(first) if first.time_s <= t.time_s => value_at(points, t.time_s).unwrap_or(usual),
         _ => usual,
     };
-    // Controls also change transients, so the event states what gives the amplitude after them.
+    // Controls also change transients, so the event states the intensity that gives the right
+    // amplitude after the control was applied.
     let intensity = libm::sqrt(t.amplitude.clamp(0.0, 1.0)) / control(levels, 1.0).max(1e-6);
     let sharpness = profile.part_of(t.frequency_hz) - control(parts, 0.0);
     Entry::Event(Event {

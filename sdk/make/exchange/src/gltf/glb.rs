@@ -1,5 +1,5 @@
-//! The binary container of glTF 2.0, GLB (specification, section 4.4): a header, a chunk of JSON,
-//! and a chunk of bytes.
+//! Reads and writes GLB, the binary container of glTF 2.0 (specification, section 4.4). A container
+//! has a header, a chunk of JSON, and a chunk of bytes.
 
 use crate::error::Fault;
 
@@ -21,8 +21,8 @@ pub(super) struct Chunks<'a> {
     pub(super) binary: Option<&'a [u8]>,
 }
 
-/// Returns the chunks of a file, or its whole text if it is not a container. Chunks of other kinds
-/// are ignored, as the specification requires.
+/// Returns the chunks of a file. If the file is not a container, its whole content is the JSON.
+/// Chunks of other kinds are ignored, as the specification requires.
 pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
     if !file.starts_with(MAGIC) {
         return Ok(Chunks { json: file, binary: None });
@@ -34,8 +34,8 @@ pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
         return Err(Fault::new(place, "the first chunk is not JSON"));
     }
     let next = if json.end < file.len() { Some(Chunk::read_at(file, json.end)?) } else { None };
-    // A second chunk of another kind is no error: the specification lets readers skip unknown
-    // chunks.
+    // A second chunk of another kind is not an error, because the specification lets readers skip
+    // unknown chunks.
     Ok(Chunks { json: json.bytes, binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes) })
 }
 
@@ -57,7 +57,7 @@ fn check_header(file: &[u8]) -> Result<(), Fault> {
     Err(Fault::new("byte 8", problem))
 }
 
-/// The 32-bit number at a byte offset, if the file is long enough.
+/// Returns the 32-bit number at a byte offset, or `None` if the file is too short.
 fn number_at(file: &[u8], at: usize) -> Option<u32> {
     let bytes = file.get(at..)?.first_chunk()?;
     Some(u32::from_le_bytes(*bytes))
@@ -66,7 +66,7 @@ fn number_at(file: &[u8], at: usize) -> Option<u32> {
 struct Chunk<'a> {
     kind: [u8; 4],
     bytes: &'a [u8],
-    /// Where the next chunk begins.
+    /// Byte offset of the next chunk.
     end: usize,
 }
 
@@ -90,10 +90,11 @@ impl<'a> Chunk<'a> {
     }
 }
 
-/// Writes a container of less than 4 GiB.
+/// Writes a container. It must be smaller than 4 GiB.
 #[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
-    // The specification pads text with blanks, so that it stays JSON, and bytes with zeros.
+    // The specification requires that JSON is padded with blanks, so that it stays valid, and that
+    // bytes are padded with zeros.
     let chunks = [(JSON, padded(json, b' ')), (BINARY, padded(binary, 0))];
     let lengths = chunks.iter().map(|(_, bytes)| CHUNK_HEADER_BYTES + bytes.len());
     let length = HEADER_BYTES + lengths.sum::<usize>();

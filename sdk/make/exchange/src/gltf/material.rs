@@ -1,4 +1,4 @@
-//! The properties of the glTF extension.
+//! The properties of the glTF extension `HTEX_texture`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,21 +9,22 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a glTF 2.0 material: what a finger feels when it slides over
-/// surfaces of this material. Properties that are not described here are allowed, including
-/// `extensions` and `extras`.
+/// The extension `HTEX_texture` of a glTF 2.0 material. It states what a finger feels when it
+/// slides over surfaces of this material. Properties that are not described here are allowed,
+/// including `extensions` and `extras`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {
-    /// Index of the buffer view whose bytes are a `.htex` file.
+    /// Index of the buffer view that contains a `.htex` file.
     pub buffer_view: u32,
     /// Media type of these bytes.
     pub mime_type: MediaType,
-    /// Number n of the texture coordinates `TEXCOORD_n`, which say where on the surface a point is.
+    /// The number n of the set of texture coordinates, `TEXCOORD_n`. They state where on the
+    /// surface a point lies.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Size on the surface, in millimetres, of one unit of the first and of the second texture
-    /// coordinate. Without it, distances follow from the geometry.
+    /// Length on the surface, in millimetres, of one unit of the first and of the second texture
+    /// coordinate. Without it, distances on the surface follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,
@@ -38,11 +39,12 @@ pub enum MediaType {
 }
 
 impl Material {
-    /// Checks what the types do not express; `pointer` leads to the extension.
+    /// Checks the rules that the types do not express. `pointer` is the JSON pointer to the
+    /// extension.
     pub(super) fn check(&self, pointer: &str) -> Result<(), Fault> {
         let sizes = self.tex_coord_size_mm.iter().flatten();
         for (i, size_mm) in sizes.enumerate() {
-            // Written this way so that NaN is refused too.
+            // Written this way so that NaN is also refused.
             if !(*size_mm > 0.0 && size_mm.is_finite()) {
                 return Err(Fault::new(
                     format!("{pointer}/texCoordSizeMm/{i}"),

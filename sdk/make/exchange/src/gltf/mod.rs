@@ -1,8 +1,8 @@
-//! glTF 2.0 with the extension `HTEX_texture`: a material with an asset, whose file is stored in a
-//! buffer view (`spec/materials-1.md`).
+//! Reads and writes glTF 2.0 files with the extension `HTEX_texture` (`spec/materials-1.md`). A
+//! material refers to an asset, whose file is stored in a buffer view.
 //!
-//! The types of this crate read only the objects on the way from a material to the bytes.
-//! Everything else in a file is ignored, even if it is wrong.
+//! The reader reads only the objects that lead from a material to the bytes of the asset. It
+//! ignores everything else in the file, even if it is invalid.
 
 mod glb;
 mod material;

@@ -1,4 +1,4 @@
-//! Reading the asset that a glTF file's material carries.
+//! Reads the asset to which a material of a glTF file refers.
 
 use std::borrow::Cow;
 
@@ -13,18 +13,18 @@ use crate::format::Naming;
 use crate::import::ImportedAsset;
 use crate::json;
 
-/// Media types of buffers in data URIs (glTF 2.0, section 3.6.1).
+/// Allowed media types of buffers in data URIs (glTF 2.0, section 3.6.1).
 const BUFFER_TYPES: [&str; 2] = ["application/octet-stream", "application/gltf-buffer"];
-/// A buffer in a container may be shorter than its chunk by this many bytes.
+/// Number of bytes by which a buffer in a container may be shorter than its chunk.
 const MOST_PADDING: usize = 3;
 
-/// The texture of a glTF file.
+/// The texture that was found in a glTF file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Texture {
-    /// What its material says about it.
+    /// The properties of the material's extension.
     pub material: Material,
-    /// The `.htex` file.
+    /// The bytes of the `.htex` file.
     pub bytes: Vec<u8>,
 }
 
@@ -81,9 +81,10 @@ struct Buffer {
 /// Reads the texture of a `.glb` or a `.gltf` file.
 ///
 /// # Errors
-/// When the file is not glTF 2.0, no material or several different ones carry a texture, or its
-/// bytes are not where the file says. The fault names the place: a JSON pointer, or a byte of a
-/// `.glb`. Whether the bytes are a valid asset is not checked.
+/// When the file is not glTF 2.0, when no material has a texture or several materials have
+/// different ones, or when the bytes are not where the file states. The fault names the place: a
+/// JSON pointer, or a byte of a `.glb`. This function does not check that the bytes are a valid
+/// asset.
 pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     if file.len() as u64 > json::MOST_BYTES {
         let most = json::MOST_BYTES;
@@ -100,12 +101,12 @@ pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     Ok(Texture { material: material.clone(), bytes })
 }
 
-/// The copyright that a file states; `None` if it states none or cannot be read.
+/// Returns the copyright that a file states, or `None` if it states none or cannot be read.
 pub(crate) fn copyright(file: &[u8]) -> Option<String> {
     crate::rights::text(chunks(file).ok()?.json, "asset", "copyright")
 }
 
-/// Reads the texture of a file as an asset, which has its own name.
+/// Reads the texture of a file as an asset. The asset keeps its own name.
 pub(crate) fn import(file: &[u8], _: &Naming<'_>) -> Result<ImportedAsset, Fault> {
     let texture = read(file)?;
     let asset = htex_format::Asset::from_bytes(&texture.bytes).map_err(|error| {
@@ -124,8 +125,8 @@ impl Document {
         for (key, version) in versions {
             let Some(version) = version else { continue };
             let is_read = match key {
-                // A file that needs a later version may use what is unknown here; one that is
-                // merely written for a later 2.x must still be readable.
+                // A file that needs a later version may use properties that this reader does not
+                // know. A file that only names a later version 2.x must still be readable.
                 "minVersion" => version == "2.0",
                 _ => version.starts_with("2."),
             };
@@ -137,7 +138,8 @@ impl Document {
         Ok(())
     }
 
-    /// The file's only texture, with the pointer to it. Several materials may share one texture.
+    /// Returns the only texture of the file, with the JSON pointer to it. Several materials may
+    /// share this texture.
     fn texture(&self) -> Result<(String, &Material), Fault> {
         let all = self.materials.iter().enumerate();
         let mut textures = all.filter_map(|(i, m)| Some((i, m.extensions.texture.as_ref()?)));
@@ -207,7 +209,7 @@ fn pointer_to(material: usize) -> String {
 }
 
 impl Buffer {
-    /// The bytes of a buffer, as many as it states.
+    /// Returns the bytes of a buffer. Their number is the buffer's stated length.
     fn bytes<'a>(&self, index: usize, chunks: &Chunks<'a>) -> Result<Cow<'a, [u8]>, Fault> {
         let pointer = format!("/buffers/{index}");
         let whole = match &self.uri {

@@ -1,4 +1,4 @@
-//! Writing a glTF file: a rectangle whose material carries an asset.
+//! Writes a glTF file with a rectangle whose material refers to an asset.
 
 use std::borrow::Cow;
 
@@ -17,26 +17,26 @@ use crate::json::{self, MOST_BYTES};
 const SIDE_MM: f64 = 100.0;
 /// Half the side in metres, the unit of glTF.
 const HALF_M: f32 = 0.05;
-/// Corners with their texture coordinates: the first goes from left to right, the second from the
-/// upper to the lower edge.
+/// Corners with their texture coordinates. The first coordinate goes from left to right, the second
+/// from the upper edge to the lower edge.
 const CORNERS: [([f32; 3], [f32; 2]); 4] = [
     ([-HALF_M, HALF_M, 0.0], [0.0, 0.0]),
     ([-HALF_M, -HALF_M, 0.0], [0.0, 1.0]),
     ([HALF_M, HALF_M, 0.0], [1.0, 0.0]),
     ([HALF_M, -HALF_M, 0.0], [1.0, 1.0]),
 ];
-/// The rectangle faces +Z. Seen from there, its triangles run counterclockwise.
+/// The rectangle faces +Z. Seen from +Z, the corners of its triangles run counterclockwise.
 const NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
 const TRIANGLES: [u16; 6] = [0, 1, 2, 2, 1, 3];
 
-/// Constants of glTF 2.0.
+/// Numeric constants of glTF 2.0.
 const FLOAT: u32 = 5126;
 const UNSIGNED_SHORT: u32 = 5123;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Writes the asset on a rectangle: as a `.gltf` file with an embedded buffer if that extension is
-/// requested, otherwise as a `.glb`.
+/// Writes a glTF file with a rectangle and the asset. If the extension `.gltf` is requested, writes
+/// a `.gltf` file with an embedded buffer, otherwise a `.glb` file.
 pub(crate) fn export(
     asset: &htex_play::Texture,
     job: &Export<'_>,
@@ -52,8 +52,8 @@ pub(crate) fn export(
     }
     let mut buffer = Buffer::of_rectangle();
     let texture = Material {
-        // After the rectangle: offsets of its numbers must be multiples of four, and an asset has
-        // any length.
+        // Added after the rectangle, because the rectangle's numbers need offsets that are
+        // multiples of four, and an asset may have any length.
         buffer_view: buffer.add(&asset, None),
         mime_type: MediaType::Htex,
         tex_coord: 0,
@@ -95,7 +95,8 @@ struct Buffer {
 }
 
 impl Buffer {
-    /// Positions, normals and texture coordinates, and the triangles' indices.
+    /// Makes the buffer of the rectangle: positions, normals, texture coordinates, and the indices
+    /// of the triangles.
     fn of_rectangle() -> Self {
         let mut made = Self { bytes: Vec::new(), views: Vec::new() };
         let floats = |values: Vec<f32>| -> Vec<u8> {
@@ -128,7 +129,7 @@ impl Buffer {
 fn document(name: &str, texture: &Material, buffer: &Buffer) -> Value {
     let vector = |view: usize, kind: &str| json!({"bufferView": view, "componentType": FLOAT, "count": CORNERS.len(), "type": kind});
     let mut positions = vector(0, "VEC3");
-    // The specification demands both ends for positions, and for nothing else.
+    // The specification requires minimum and maximum for positions, but not for other numbers.
     positions["min"] = json!([-HALF_M, -HALF_M, 0.0]);
     positions["max"] = json!([HALF_M, HALF_M, 0.0]);
     let indices = json!({

@@ -1,4 +1,4 @@
-//! Conversion of a toolkit texture to an asset.
+//! Converts a texture of the Penn Haptic Texture Toolkit to an asset.
 
 use htex_author::{new_asset, representation};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
@@ -18,13 +18,14 @@ use crate::import::ImportedAsset;
 
 const MODEL: &str = "org.htex.arma";
 
-/// Reads a model file as an asset.
+/// Reads a model file of the toolkit as an asset.
 pub(crate) fn import(bytes: &[u8], naming: &Naming<'_>) -> Result<ImportedAsset, Fault> {
     let texture = read(bytes)?;
     Ok(ImportedAsset::new(asset(&texture, naming)?, None, texture.notes))
 }
 
-/// Makes the asset of a texture. It has no licence, because the file states none.
+/// Converts a texture of the toolkit to an asset. The asset has no licence, because the file states
+/// none.
 ///
 /// # Errors
 /// When a filter cannot be stored because its poles or zeros are too close to each other.
@@ -33,7 +34,7 @@ pub fn asset(texture: &Texture, naming: &Naming<'_>) -> Result<Asset, Fault> {
     let model = registry.find(MODEL).map_err(|error| Fault::whole(error.to_string()))?;
     let mut representation = representation(model, Vec::new());
     if let Some(rate) = representation.fields.last_mut() {
-        // The rate is the same at all nodes, so one byte at each is enough.
+        // The sample rate is the same at all nodes, so one byte for each node is enough.
         rate.store = StoredAs::U8(Steps { scale: texture.rate_hz, offset: 0.0, log: false });
     }
     let band = band(texture.rate_hz);
@@ -73,12 +74,13 @@ pub fn asset(texture: &Texture, naming: &Naming<'_>) -> Result<Asset, Fault> {
     Ok(asset)
 }
 
-/// The tactile band, as far as the filters' sample rate covers it.
+/// Returns the tactile band, limited to the frequencies that the sample rate of the filters can
+/// represent.
 fn band(rate_hz: f64) -> Band {
     Band { high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz), ..Band::TACTILE }
 }
 
-/// The parameters of a node.
+/// Returns the model parameters of a node.
 fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
     let lines = |coefficients: &[f64], what: &str| {
         let negated: Vec<f64> = coefficients.iter().map(|a| -a).collect();
@@ -89,8 +91,9 @@ fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
     Ok([&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat())
 }
 
-/// The level at which the stored shape has the filter's magnitude. Noise of variance s² has the
-/// one-sided density 2 s² / rate, which is read as magnitude² = 2 P ENBW.
+/// Returns the level at which the stored spectral shape has the magnitude of the filter. Noise of
+/// variance s² has the one-sided power density P = 2 s² / rate. A spectrum shows it as magnitude² =
+/// 2 P ENBW, where ENBW is the equivalent noise bandwidth of the window.
 fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f64, Fault> {
     let poles = stored.get(1..=node.ar.len()).unwrap_or_default();
     let zeros = stored.get(node.ar.len() + 2..).and_then(|rest| rest.get(..node.ma.len()));
@@ -110,7 +113,7 @@ fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f6
     if level_rms.is_finite() { Ok(level_rms) } else { Err(fault(node, "its level is not finite")) }
 }
 
-/// A fault of a node.
+/// Makes a fault at the place of a node.
 fn fault(node: &Node, problem: impl AsRef<str>) -> Fault {
     Fault::new(&node.place, problem)
 }

@@ -1,6 +1,6 @@
-//! Reader of XML elements: names, texts and lines. It does not support document type definitions,
-//! and thus no entities except the five of XML. The size limits are far above the toolkit's model
-//! files of about 0.2 MB.
+//! Reads XML into elements with names, texts and line numbers. The reader does not support document
+//! type definitions, so the only entities are the five of XML itself. The size limits are far above
+//! the toolkit's model files, which have about 0.2 MB.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};
@@ -14,10 +14,10 @@ pub const MOST_BYTES: usize = 16 << 20;
 const MOST_ELEMENTS: usize = 200_000;
 /// Deepest nesting of elements.
 const MOST_DEPTH: usize = 16;
-/// Longest text of an element, bytes, without blanks at its ends.
+/// Longest text of an element, bytes, without blanks at its start and end.
 const MOST_TEXT: usize = 4096;
-/// Largest number of attributes of an element; the reader compares each with all attributes before
-/// it.
+/// Largest number of attributes of an element. It is limited because the reader compares each
+/// attribute with all earlier ones.
 const MOST_ATTRIBUTES: usize = 64;
 
 /// Reads the root element.
@@ -45,12 +45,12 @@ struct Builder<'a> {
     reader: Reader<&'a [u8]>,
     /// Elements that are still open, the outermost first.
     open: Vec<Element>,
-    /// Length in bytes of the innermost open element's text up to its last non-blank character. It
-    /// is stored so that no blank is looked at twice.
+    /// Length, bytes, of the innermost open element's text up to its last non-blank character. It
+    /// is stored so that the reader looks at each blank only once.
     filled: usize,
     root: Option<Element>,
     count: usize,
-    /// The last position whose line is known, and that line.
+    /// The last position whose line number was computed, and this line number.
     known: (usize, usize),
 }
 
@@ -84,7 +84,7 @@ impl<'a> Builder<'a> {
         root.ok_or_else(|| Fault::whole("it holds no element; give a model file of the toolkit"))
     }
 
-    /// Processes an event; returns false at the end of the file.
+    /// Processes an event of the XML parser. Returns false at the end of the file.
     fn process(&mut self, event: Event<'a>) -> Result<bool, Fault> {
         match event {
             Event::Start(start) => self.start(&start)?,
@@ -95,8 +95,8 @@ impl<'a> Builder<'a> {
             Event::End(_) => self.close(),
             Event::Text(text) => self.words(&decoded(text.decode()))?,
             Event::CData(text) => self.words(&decoded(text.decode()))?,
-            // No entity is defined in a file, so none can expand to a text that is longer than the
-            // file.
+            // A file cannot define entities, so no entity can expand to a text that is longer than
+            // the file.
             Event::GeneralRef(reference) => {
                 let word = self.resolved(&reference)?;
                 self.words(&word)?;
@@ -149,7 +149,7 @@ impl<'a> Builder<'a> {
         match self.open.last_mut() {
             Some(parent) => {
                 self.filled = parent.text.trim_end().len();
-                // The blanks before a child would otherwise add up with each child of a long list.
+                // Otherwise, in a long list, the blanks before each child would add up.
                 parent.text.truncate(self.filled);
                 parent.children.push(closed);
             }
@@ -167,7 +167,7 @@ impl<'a> Builder<'a> {
                 Err(self.fault("a text outside of all elements"))
             };
         };
-        // The space between elements is not text.
+        // Blanks between elements do not count as text.
         let skipped = if open.text.is_empty() { words.len() - words.trim_start().len() } else { 0 };
         if !is_blank {
             self.filled = open.text.len() + filled - skipped;
@@ -199,7 +199,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The line at which the last event ended.
+    /// Returns the line at which the last event ended.
     fn line(&mut self) -> usize {
         self.line_at(self.reader.buffer_position())
     }
@@ -222,7 +222,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The text of bytes. They are valid UTF-8, as the whole file is.
+/// Returns bytes as text. They are valid UTF-8, because the whole file is.
 fn decoded<E>(text: Result<std::borrow::Cow<'_, str>, E>) -> String {
     text.map(std::borrow::Cow::into_owned).unwrap_or_default()
 }

@@ -1,4 +1,5 @@
-//! What a model file contains in addition to the texture, stored as an extension of the asset.
+//! Stores the contents of a model file that the texture itself does not use, as an extension of the
+//! asset.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,10 +24,12 @@ pub(crate) struct Hatt {
     /// Rate at which the toolkit runs its filters, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub sample_rate_hz: f64,
-    /// Highest speed of the toolkit's renderer, mm/s: it plays all higher speeds as this one.
+    /// Highest speed of the toolkit's renderer, mm/s. The renderer plays all higher speeds as this
+    /// speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_speed_mm_s: Option<f64>,
-    /// Largest force of the toolkit's renderer, newtons: it plays all larger forces as this one.
+    /// Largest force of the toolkit's renderer, newtons. The renderer plays all larger forces as
+    /// this force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_force_n: Option<f64>,
 }

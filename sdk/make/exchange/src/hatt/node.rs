@@ -1,4 +1,4 @@
-//! A node: the filter at one speed and force.
+//! A node of a model file: the filter at one speed and force.
 
 use htex_dsp::all_zero::MAX_ORDER;
 use htex_dsp::line_spectrum::line_spectral_frequencies;
@@ -9,14 +9,14 @@ use super::work::Work;
 use super::zeros::{NotFound, inside};
 use crate::error::Fault;
 
-/// Largest difference between a line spectral frequency in the file and the one computed from the
-/// coefficients, radians, without a warning.
+/// Largest difference, radians, that causes no warning: between a line spectral frequency in the
+/// file and the same frequency computed from the coefficients.
 const LINE_ERROR: f64 = 1e-3;
 
-/// The problem reported for a file whose filters take too much work.
+/// The problem that is reported for a file whose filters take too much work.
 const TOO_MUCH: &str = "the filters up to here take too much work, by their number, their orders and their zeros outside the unit circle; split the file";
 
-/// A filter at one speed and force. The acceleration is noise of `variance`, filtered by
+/// A filter at one speed and force. The acceleration is noise of variance `variance`, filtered by
 /// `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
@@ -30,7 +30,8 @@ pub struct Node {
     /// Variance of the noise, (m/s²)²; 0 at a silent node.
     pub variance: f64,
     pub gain: f64,
-    /// Where the node is in the file: its line, and that line with the name of its element.
+    /// Where the node is in the file: its line number, and a text with this line and the name of
+    /// the element.
     pub(super) line: usize,
     pub(super) place: String,
 }
@@ -80,13 +81,14 @@ impl Node {
         })
     }
 
-    /// Standard deviation of the noise multiplied by the gain, m/s²; 0 at a silent node.
+    /// Returns the standard deviation of the noise multiplied by the gain, m/s²; 0 at a silent
+    /// node.
     pub fn deviation(&self) -> f64 {
         self.gain * self.variance.sqrt()
     }
 }
 
-/// The coefficients of a polynomial after the first, which must be 1.
+/// Returns the coefficients of a polynomial without the first one, which must be 1.
 fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64>, Fault> {
     let list = if is_required { Some(node.required(name)?) } else { node.one(name)? };
     let Some(list) = list else {
@@ -106,8 +108,8 @@ fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64
     Ok(rest.to_vec())
 }
 
-/// Compares the line spectral frequencies in the file, if it has any, with the frequencies computed
-/// from the coefficients.
+/// Compares the line spectral frequencies in the file, if there are any, with those that are
+/// computed from the coefficients.
 fn compare_lines(
     node: &Element,
     name: &str,

@@ -1,4 +1,4 @@
-//! A model file: nodes, and the triangles between them.
+//! Reads a model file: nodes, and the triangles between them.
 
 use htex_format::{Triangle, check_triangles};
 
@@ -20,13 +20,13 @@ pub struct Texture {
     pub number: Option<u32>,
     /// Sample rate of the filters, hertz.
     pub rate_hz: f64,
-    /// Coefficient of kinetic friction of the tool.
+    /// Coefficient of kinetic friction between tool and surface.
     pub friction: Option<f64>,
     pub max_speed_mm_s: Option<f64>,
     pub max_force_n: Option<f64>,
     pub nodes: Vec<Node>,
-    /// Triangles between nodes, by node index from 0. Empty if the format's own rules for triangles
-    /// are used.
+    /// Triangles between nodes, as indices of nodes that start at 0. If empty, a player finds
+    /// triangles itself.
     pub triangles: Vec<Triangle>,
     /// What the user should know about the file.
     pub notes: Vec<String>,
@@ -64,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
     })
 }
 
-/// Refuses units other than the toolkit's.
+/// Returns a fault if the file states other units than the toolkit's.
 fn check_unit(root: &Element, name: &str, unit: &str) -> Result<(), Fault> {
     match root.one(name)? {
         Some(given) if given.text.trim() != unit => {
@@ -80,7 +80,8 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
     if models.is_empty() {
         return Err(root.fault("it has no element model"));
     }
-    // One limit for all nodes: a file of many small models takes as long as one of a large model.
+    // One limit applies to all nodes together, because a file with many small filters takes as long
+    // as one with a large filter.
     let mut work = Work::default();
     let nodes = models
         .iter()
@@ -107,7 +108,7 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
     Ok(nodes)
 }
 
-/// Checks a count in the file, if there is one.
+/// Checks a count that the file may state.
 fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(), Fault> {
     match root.one(name)? {
         Some(stated) if stated.count()? != count => Err(stated.fault(format!(
@@ -118,7 +119,8 @@ fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(),
     }
 }
 
-/// Checks an order in the file, if there is one. The toolkit does not count the first coefficient.
+/// Checks the order of a filter that the file may state. The toolkit does not count the first
+/// coefficient.
 fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     match root.one(name)? {
         Some(stated) if ![order, order + 1].contains(&stated.count()?) => {
@@ -131,7 +133,7 @@ fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     }
 }
 
-/// Checks a list in the file, if there is one, against the nodes' own numbers.
+/// Checks a list that the file may state against the numbers of the nodes.
 fn check_list(
     root: &Element,
     name: &str,
@@ -154,7 +156,7 @@ fn check_list(
     Ok(())
 }
 
-/// Refuses two nodes at the same motion.
+/// Returns a fault if two nodes have the same speed and force.
 fn check_places(models: &[&Element], nodes: &[Node]) -> Result<(), Fault> {
     let mut seen = std::collections::BTreeMap::new();
     for (model, node) in models.iter().zip(nodes) {
@@ -194,7 +196,7 @@ fn triangles(
     }
 }
 
-/// The corners of a triangle. The file counts nodes from 1.
+/// Reads the corners of a triangle. The file counts nodes from 1.
 fn triangle(element: &Element, nodes: usize) -> Result<Triangle, Fault> {
     let corners: Vec<&Element> = element.all("value").collect();
     let corner = |corner: &Element| match corner.count()? {

@@ -1,5 +1,5 @@
-//! Mirroring of zeros that lie outside the unit circle. Noise through the mirrored filter has the
-//! same spectrum up to a gain.
+//! Mirrors zeros that lie outside the unit circle to its inside. Noise that passes through the
+//! mirrored filter has the same spectrum up to a gain.
 
 use std::f64::consts::TAU;
 
@@ -8,17 +8,18 @@ use htex_dsp::spectrum::Complex;
 
 use super::work::Work;
 
-/// Largest radius of a zero that has been moved.
+/// Largest radius of a zero after mirroring.
 const MOST_RADIUS: f64 = 1.0 - 1e-7;
-/// Largest number of rounds in which roots are improved. Some ten are enough unless roots are
+/// Largest number of rounds that improve the roots. Some ten rounds are enough, unless roots are
 /// equal.
 const ROUNDS: usize = 500;
 /// Number of angles at which the result is compared with the original polynomial.
 const COMPARED: u32 = 512;
-/// Largest allowed difference between the two, relative to the largest power.
+/// Largest allowed difference between the result and the original polynomial, relative to the
+/// largest power.
 const MOST_ERROR: f64 = 1e-6;
 
-/// Why zeros could not be found.
+/// Why the zeros of a polynomial could not be found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NotFound {
     /// The search failed for these coefficients.
@@ -28,15 +29,15 @@ pub(super) enum NotFound {
 }
 
 /// Returns the coefficients `B_1` to `B_q` of a polynomial `1 + Σ B_i z⁻ⁱ` with all zeros inside
-/// the unit circle, and a gain. Multiplied by the gain, it has the same absolute value on the
-/// circle as the given polynomial.
+/// the unit circle, and a gain. On the circle, this polynomial multiplied by the gain has the same
+/// absolute value as the given polynomial.
 pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>, f64), NotFound> {
     let mut reflection: Vec<f64> = coefficients.iter().map(|b| -b).collect();
-    // The step-down recursion succeeds only if all zeros are inside already.
+    // The step-down recursion succeeds only if all zeros already lie inside.
     if step_down_in_place(&mut reflection) {
         return Ok((coefficients.to_vec(), 1.0));
     }
-    // Zeros at the origin, from trailing coefficients of 0, are left out of the search.
+    // Trailing coefficients of 0 are zeros at the origin. The search leaves them out.
     let order = coefficients.iter().rposition(|b| *b != 0.0);
     let used = order.and_then(|last| coefficients.get(..=last)).ok_or(NotFound::Here)?;
     let (mut gain, mut zeros) = (1.0, roots(used, work)?);
@@ -53,8 +54,8 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
         }
     }
     let mut made = product(&zeros);
-    // Zeros close to each other are found with few digits, so the result is compared and not
-    // trusted.
+    // Zeros that are close to each other are found with few digits, so the result is compared with
+    // the original.
     if !is_same(used, &made, gain) {
         return Err(NotFound::Here);
     }
@@ -68,7 +69,7 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
     let last = coefficients.last().ok_or(NotFound::Here)?.abs();
     // The last coefficient is the product of all zeros, so this is their mean radius.
     let radius = libm::pow(last, 1.0 / order as f64).max(1e-3);
-    // The quarter keeps the starting points from being symmetric about the real axis.
+    // Adding 0.25 prevents starting points that are symmetric about the real axis.
     let start = |i: usize| turned(radius, TAU * (i as f64 + 0.25) / order as f64);
     let mut zeros: Vec<Complex<f64>> = (0..order).map(start).collect();
     for _ in 0..ROUNDS {
@@ -81,14 +82,15 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
             let others = zeros.iter().enumerate().filter(|(j, _)| *j != i);
             let pushed: Complex<f64> = others.map(|(_, other)| (at - other).inv()).sum();
             let step = newton / (Complex::new(1.0, 0.0) - newton * pushed);
-            // The slope may be 0, or two estimates may meet. Such a zero waits until the others
-            // have moved.
+            // The slope may be 0, or two estimates may be equal. Then this zero stays until the
+            // others have moved.
             if step.re.is_finite() && step.im.is_finite() {
                 *zeros.get_mut(i).ok_or(NotFound::Here)? -= step;
                 moved = moved.max(step.norm_sqr() / at.norm_sqr().max(1e-30));
             }
         }
-        // A square: a relative step of 1e-15, about the precision of a double.
+        // `moved` is a square, so this is a relative step of 1e-15, about the precision of a
+        // double.
         if moved < 1e-30 {
             break;
         }
@@ -106,8 +108,8 @@ fn turned(radius: f64, angle: f64) -> Complex<f64> {
     Complex::new(radius * libm::cos(angle), radius * libm::sin(angle))
 }
 
-/// The coefficients from `B_1` on of the polynomial with these zeros, which come in conjugate
-/// pairs.
+/// Returns the coefficients, from `B_1` on, of the polynomial with these zeros. They come in
+/// conjugate pairs.
 fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
     let mut made = vec![Complex::new(1.0, 0.0)];
     for zero in zeros {
@@ -122,8 +124,8 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
     made.iter().skip(1).map(|b| b.re).collect()
 }
 
-/// Whether two polynomials have the same power on the circle after the second is multiplied by the
-/// gain.
+/// Returns whether two polynomials have the same power on the circle, after the second is
+/// multiplied by the gain.
 fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
     let at = |i: u32| TAU / 2.0 * f64::from(i) / f64::from(COMPARED);
     let powers = (0..=COMPARED).map(at).map(|w| (power(a, w), power(b, w) * gain * gain));
@@ -132,7 +134,7 @@ fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
     powers.iter().all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
 }
 
-/// The squared absolute value of `1 + Σ B_i z⁻ⁱ`.
+/// Returns the squared absolute value of `1 + Σ B_i z⁻ⁱ` at an angle on the unit circle.
 fn power(coefficients: &[f64], angle: f64) -> f64 {
     let step = turned(1.0, -angle);
     let sum = coefficients.iter().rev().fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);

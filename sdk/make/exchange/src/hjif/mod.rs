@@ -1,11 +1,12 @@
-//! Reader and writer of MPEG's `.hjif` (ISO/IEC 23090-31, the readable format). A file has
-//! perceptions with channels, channels with bands, bands with effects, and effects with keyframes.
+//! Reads and writes MPEG's `.hjif`, the human-readable format of ISO/IEC 23090-31. A file has
+//! perceptions. A perception has channels, a channel has bands, a band has effects, and an effect
+//! has keyframes.
 //!
-//! Written from the reference software (MPEGGroup/HapticReferenceSoftware:
-//! source/IOHaptics/src/IOJson.cpp for the keys and the rules, source/Types/src/Effect.cpp for what
-//! a keyframe sounds like, source/WaveletDecoder for wavelets), and from the names of perceptions
-//! in draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are
-//! also read. From a file, only the first channel of the first perception that vibrates is read.
+//! The code follows the reference software (MPEGGroup/HapticReferenceSoftware):
+//! source/IOHaptics/src/IOJson.cpp for keys and rules, source/Types/src/Effect.cpp for the sound of
+//! keyframes, and source/WaveletDecoder for wavelets. The names of perceptions come from
+//! draft-ietf-avtcore-rtp-haptics. Keys of earlier drafts (`tracks`, `mixing_weight`) are also
+//! read. The reader uses only the first channel of the first perception that is a vibration.
 
 mod check;
 mod number;
@@ -43,7 +44,7 @@ pub struct Hjif {
     pub date: String,
     #[serde(default)]
     pub description: String,
-    /// Number of ticks of a position in a second or in a metre.
+    /// Number of ticks per second or per metre. Positions are in ticks.
     #[serde(default = "thousand")]
     pub timescale: u32,
     #[serde(default)]
@@ -114,7 +115,8 @@ pub struct Band {
     pub block_length: Option<f64>,
     #[serde(serialize_with = "whole")]
     pub lower_frequency_limit: f64,
-    /// For a wavelet band, its number of samples in a second or in a metre.
+    /// Upper edge of the band. In a wavelet band, it is the number of samples per second or per
+    /// metre.
     #[serde(serialize_with = "whole")]
     pub upper_frequency_limit: f64,
     pub effects: Vec<Effect>,
@@ -197,12 +199,12 @@ const fn unity() -> f64 {
     1.0
 }
 
-/// The modality of a texture over space.
+/// Perception modality of a texture over space.
 pub const TEXTURE: &str = "Vibrotactile Texture";
-/// The modality of a vibration over time.
+/// Perception modality of a vibration over time.
 pub const VIBRATION: &str = "Vibrotactile";
 
-/// Modalities that are read as a vibration over time; the last ones are names from drafts.
+/// Modalities that are read as a vibration over time. The last ones are names from drafts.
 const OVER_TIME: [&str; 7] = [
     VIBRATION,
     "Other",
@@ -219,8 +221,8 @@ impl Hjif {
     /// Reads an `.hjif` file.
     ///
     /// # Errors
-    /// When it is not JSON, has another structure, or a number is out of range. The fault names the
-    /// place.
+    /// When the file is not JSON, has another structure, or a number is out of range. The fault
+    /// names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let hjif: Self = json::read(bytes)?;
         check::check(&hjif)?;
@@ -234,15 +236,15 @@ impl Hjif {
         bytes
     }
 
-    /// Whether the positions lie in space instead of time, so that the finger's speed has to be
-    /// given.
+    /// Returns whether positions lie in space instead of time. In space, the user must give the
+    /// finger's speed.
     #[must_use]
     pub fn is_over_space(&self) -> bool {
         self.chosen()
             .is_some_and(|chosen| OVER_SPACE.contains(&&chosen.perception.perception_modality[..]))
     }
 
-    /// The channel that is read.
+    /// Returns the channel that is read.
     fn chosen(&self) -> Option<Chosen<'_>> {
         let vibrates = |p: &&Perception| {
             let modality = &p.perception_modality[..];
@@ -258,7 +260,7 @@ impl Hjif {
         })
     }
 
-    /// What the reader ignores in this file, each as a sentence.
+    /// Returns what the reader ignores in this file, as a list of sentences.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let mut left_out = Vec::new();
@@ -278,7 +280,7 @@ impl Hjif {
     }
 }
 
-/// The channel that is read, with its place in the file.
+/// The channel that is read, and its place in the file.
 struct Chosen<'a> {
     perception: &'a Perception,
     channel: &'a Channel,
@@ -286,7 +288,7 @@ struct Chosen<'a> {
 }
 
 impl Chosen<'_> {
-    /// Length of a tick, in seconds or metres.
+    /// Returns the length of a tick, in seconds or metres.
     fn tick(&self, timescale: u32) -> f64 {
         libm::pow(10.0, f64::from(self.perception.unit_exponent + 3)) / f64::from(timescale.max(1))
     }

@@ -1,8 +1,8 @@
-//! Writing whole numbers as JSON integers, which the reference software requires.
+//! Writes whole numbers as JSON integers, which the reference software requires.
 
 use serde::Serializer;
 
-/// Up to this number, every integer is exact in binary64.
+/// Up to this number, a double represents every integer exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 pub(super) fn whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,4 +1,4 @@
-//! Rendering the bands of a channel to samples.
+//! Renders the bands of a channel to samples.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,13 @@ use crate::curve::{Point, Reader};
 use crate::error::Fault;
 use crate::pattern::{MOST_S, check_work};
 
-/// Length of a transient, seconds: two periods of a sine (source/Types/include/Band.h).
+/// Length of a transient, seconds. A transient is two periods of a sine
+/// (source/Types/include/Band.h).
 const TRANSIENT_S: f64 = 0.022;
-/// Work for each coefficient of a block of wavelets, counted in samples.
+/// Work for each coefficient of a block of wavelets, expressed as a number of samples.
 const PER_COEFFICIENT: f64 = 4.0;
 
-/// The effects of a library to which bands refer.
+/// The effects to which bands can refer, by their ids.
 type Library<'a> = BTreeMap<i64, &'a Effect>;
 
 /// A band with its units converted to seconds.
@@ -21,22 +22,22 @@ struct BandInSeconds<'a> {
     library: &'a Library<'a>,
     /// Length of a tick, seconds.
     tick_s: f64,
-    /// Hertz for each unit of frequency.
+    /// Factor that converts the file's frequencies to hertz.
     per_s: f64,
     rate_hz: f64,
 }
 
 impl Hjif {
-    /// Renders the channel within ±1 at a sample rate in hertz. A texture over space is rendered at
-    /// a speed in mm/s.
+    /// Renders the channel that is read, at a sample rate in hertz. Samples lie between -1 and 1. A
+    /// texture over space is rendered as felt at a speed in mm/s.
     ///
     /// # Errors
-    /// When it is longer than ten minutes, or its effects together take too many samples.
+    /// When the channel is longer than ten minutes, or its effects together take too much work.
     pub fn rendered(&self, rate_hz: f64, speed_mm_s: f64) -> Result<Vec<f64>, Fault> {
         let Some(chosen) = self.chosen() else {
             return Err(Fault::new("/perceptions", "no perception vibrates"));
         };
-        // A file over space is played at this speed, in metres per second.
+        // Speed at which a file over space is played, metres per second.
         let speed = if self.is_over_space() { speed_mm_s / 1e3 } else { 1.0 };
         let library = chosen.perception.effect_library.iter();
         let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
@@ -58,7 +59,7 @@ impl Hjif {
     }
 }
 
-/// Number of samples up to the end of the last effect.
+/// Returns the number of samples up to the end of the last effect.
 fn length(bands: &[BandInSeconds<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
     let (mut end_s, mut work) = (0.0f64, 0.0);
     for (index, band) in bands.iter().enumerate() {
@@ -71,14 +72,14 @@ fn length(bands: &[BandInSeconds<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Res
             }
             end_s = end_s.max(to_s);
             work += band.work(effect.effect, to_s - from_s);
-            // Inside the loop: references let a short file name a long effect many times.
+            // Checked inside the loop, because a short file can refer to a long effect many times.
             check_work(work, rate_hz, at)?;
         }
     }
     Ok(first_from(end_s, rate_hz))
 }
 
-/// An effect at a position: its own position, or the position of a reference to it.
+/// An effect and its position: its own one, or the position of a reference to the effect.
 struct PlacedEffect<'a> {
     effect: &'a Effect,
     position: i64,
@@ -112,8 +113,8 @@ impl<'a> BandInSeconds<'a> {
         self.start_s(placed) + own_s
     }
 
-    /// Number of samples to which an effect is added, plus its keyframes. A transient has samples
-    /// of its own at each keyframe.
+    /// Returns the work for an effect: the number of samples to which it is added, plus its number
+    /// of keyframes. A transient effect adds samples at each keyframe.
     fn work(&self, effect: &Effect, length_s: f64) -> f64 {
         let keyframes = effect.keyframes.len() as f64;
         let samples = length_s * self.rate_hz;
@@ -124,7 +125,8 @@ impl<'a> BandInSeconds<'a> {
         }
     }
 
-    /// Length of a block of wavelets, whose sample rate is the upper frequency limit, in seconds.
+    /// Returns the length of a block of wavelets, seconds. Its sample rate is the band's upper
+    /// frequency limit.
     fn block_s(&self, samples: usize) -> f64 {
         match self.band.upper_frequency_limit * self.per_s {
             rate if rate > 0.0 => samples as f64 / rate,
@@ -149,7 +151,7 @@ impl<'a> BandInSeconds<'a> {
         }
     }
 
-    /// Curve of the keyframes' values over time in seconds.
+    /// Returns the curve of a value of the keyframes over time, in seconds.
     fn curve(&self, effect: &Effect, value: impl Fn(&Keyframe) -> Option<f64>) -> Vec<Point> {
         let point = |k: &Keyframe| {
             Some(Point::new(k.relative_position.unwrap_or(0) as f64 * self.tick_s, value(k)?))
@@ -167,8 +169,8 @@ impl<'a> BandInSeconds<'a> {
         let mut before_s = 0.0;
         for (index, sample) in own.iter_mut().enumerate() {
             let time_s = clock.into_s(index);
-            // Frequencies are linear between keyframes, so the middle of a step has the step's
-            // mean.
+            // Frequencies are linear between keyframes, so the frequency at the middle of a step is
+            // its mean over the step.
             let hz = frequency.value_at(0.5 * (before_s + time_s)).unwrap_or(0.0);
             periods += hz * (time_s - before_s);
             before_s = time_s;
@@ -180,13 +182,14 @@ impl<'a> BandInSeconds<'a> {
     fn add_block(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
         let values = effect.keyframes.iter().map(|k| k.amplitude_modulation.unwrap_or(0.0));
         let mut coefficients: Vec<f64> = values.collect();
-        // The last keyframe of a block is not a coefficient but the factor of all others.
+        // The last keyframe of a block is not a coefficient, but a factor for all coefficients.
         let scale = coefficients.pop().unwrap_or(0.0);
         coefficients.iter_mut().for_each(|c| *c *= scale);
         let block = synthesised(&coefficients);
         let per_s = self.band.upper_frequency_limit * self.per_s;
         for (index, sample) in own.iter_mut().enumerate() {
-            // Each sample is held until the next one, as the reference software plays it.
+            // The reference software holds each sample until the next one, so this code does the
+            // same.
             let at = libm::floor(clock.into_s(index) * per_s + 1e-6).max(0.0) as usize;
             *sample += block.get(at).copied().unwrap_or(0.0);
         }
@@ -204,7 +207,8 @@ impl<'a> BandInSeconds<'a> {
         }
     }
 
-    /// All curves are read as straight lines; other kinds of curves pass through the same points.
+    /// Adds a curve effect. All curves are read as straight lines between points. Other kinds of
+    /// curves pass through the same points.
     fn add_curve(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
         let curve = self.curve(effect, |k| k.amplitude_modulation);
         let mut curve = Reader::new(&curve);
@@ -214,12 +218,13 @@ impl<'a> BandInSeconds<'a> {
     }
 }
 
-/// The first sample at or after a time. A sample that is too early only by rounding counts.
+/// Returns the index of the first sample at or after a time. A sample that is too early only
+/// because of rounding also counts.
 fn first_from(time_s: f64, rate_hz: f64) -> usize {
     libm::ceil(time_s * rate_hz - 1e-6).max(0.0) as usize
 }
 
-/// The samples that an effect covers in time.
+/// Converts between samples and the time since an effect's start.
 #[derive(Clone, Copy)]
 struct Clock {
     from_s: f64,
@@ -234,18 +239,19 @@ impl Clock {
         Self { from_s, rate_hz, first }
     }
 
-    /// Time from the effect's start to one of its samples, seconds.
+    /// Returns the time from the effect's start to one of its samples, seconds.
     fn into_s(self, index: usize) -> f64 {
         (self.first + index) as f64 / self.rate_hz - self.from_s
     }
 
-    /// The index of the first sample at or after a time that counts from the effect's start.
+    /// Returns the index of the first sample at or after a time, which counts from the effect's
+    /// start.
     fn index(self, into_s: f64) -> usize {
         first_from(self.from_s + into_s, self.rate_hz).saturating_sub(self.first)
     }
 }
 
-/// The value of a base signal after some number of periods.
+/// Returns the value of a base signal after a number of periods.
 fn base(signal: BaseSignal, periods: f64) -> f64 {
     let saw = 2.0 * (periods - libm::floor(periods + 0.5));
     match signal {

@@ -1,22 +1,21 @@
-//! The wavelets of `.hjif`: the biorthogonal 9/7 transform of Cohen, Daubechies & Feauveau (1992,
-//! *Comm. Pure Appl. Math.* 45). Blocks are extended by reflection at their ends and transformed
-//! down to blocks of four coefficients.
+//! The wavelet transform of `.hjif`: the biorthogonal 9/7 transform of Cohen, Daubechies & Feauveau
+//! (1992, *Comm. Pure Appl. Math.* 45). Blocks are extended by reflection at their ends. The
+//! transform is repeated until the lowest band has four coefficients.
 //!
 //! The transform is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4):
-//! four steps and a scale, so that the inverse is exact up to rounding. It is scaled like the
-//! filters of the reference software (source/FilterBank/include/Wavelet.h), whose low-pass sums to
-//! √2.
+//! four steps and a scale. So the inverse is exact up to rounding. The scale is that of the
+//! reference software (source/FilterBank/include/Wavelet.h), whose low-pass filter sums to √2.
 
 /// The four lifting steps of the 9/7 transform.
 const STEPS: [f64; 4] =
     [-1.586_134_342_059_924, -0.052_980_118_572_961, 0.882_911_075_530_934, 0.443_506_852_043_971];
-/// Scale of the low-pass band after the steps.
+/// Scale of the low-pass band after the lifting steps.
 const SCALE: f64 = 1.149_604_398_860_241;
 /// Number of coefficients in the lowest band.
 const LOWEST: usize = 4;
 
-/// Returns the coefficients of a block, the lowest band first. The number of samples must be a
-/// power of two.
+/// Transforms a block of samples to coefficients, the lowest band first. The number of samples must
+/// be a power of two.
 #[must_use]
 pub fn analysed(block: &[f64]) -> Vec<f64> {
     let mut all = block.to_vec();
@@ -30,7 +29,7 @@ pub fn analysed(block: &[f64]) -> Vec<f64> {
     all
 }
 
-/// Returns the samples of a block, given its coefficients.
+/// Transforms coefficients back to the samples of a block.
 #[must_use]
 pub fn synthesised(coefficients: &[f64]) -> Vec<f64> {
     let mut all = coefficients.to_vec();
@@ -70,8 +69,8 @@ fn backward(low: &[f64], high: &[f64]) -> Vec<f64> {
     even.into_iter().zip(odd).flat_map(|(even, odd)| [even, odd]).collect()
 }
 
-/// Adds a fraction of both neighbours to each odd sample. The last one has a neighbour only on its
-/// left, which counts twice.
+/// Adds a fraction of both neighbours to each odd sample. The last odd sample has only a left
+/// neighbour, which counts twice.
 fn lift_odd(even: &[f64], odd: &mut [f64], part: f64) {
     let right = even.iter().skip(1).chain(even.last());
     for ((odd, left), right) in odd.iter_mut().zip(even).zip(right) {
@@ -79,8 +78,8 @@ fn lift_odd(even: &[f64], odd: &mut [f64], part: f64) {
     }
 }
 
-/// Adds a fraction of both neighbours to each even sample. The first one has a neighbour only on
-/// its right, which counts twice.
+/// Adds a fraction of both neighbours to each even sample. The first even sample has only a right
+/// neighbour, which counts twice.
 fn lift_even(even: &mut [f64], odd: &[f64], part: f64) {
     let left = odd.first().into_iter().chain(odd);
     for ((even, left), right) in even.iter_mut().zip(left).zip(odd) {

@@ -1,4 +1,4 @@
-//! Writing a texture as `.hjif`: as tones in bands, or as samples coded by wavelets.
+//! Writes a texture as `.hjif`, either as tones in bands or as samples coded by wavelets.
 
 use super::{
     Band, BandType, BaseSignal, Channel, Effect, EffectType, Hjif, Keyframe, Perception,
@@ -7,30 +7,32 @@ use super::{
 use crate::curve::Point;
 use crate::profile::Profile;
 
-/// Number of ticks in a second, or in a metre: a tick is 1 ms, or 0.1 mm.
+/// Number of ticks per second, and per metre. A tick is 1 ms, or 0.1 mm.
 const TICKS_PER_S: u32 = 1_000;
 const TICKS_PER_M: u32 = 10_000;
 /// Number of samples in a block of wavelets.
 const BLOCK: usize = 512;
-/// Lowest sample rate of a wavelet band, hertz: twice the texture's 1 kHz, and a tenth more.
+/// Lowest sample rate of a wavelet band, hertz: twice the texture's highest frequency of 1 kHz,
+/// plus a tenth.
 const LEAST_RATE_HZ: f64 = 2_200.0;
-/// Resolution of a coefficient, relative to the largest one in its block.
+/// Resolution of a coefficient, relative to the largest coefficient of its block.
 const RESOLUTION: f64 = 1e-4;
-/// The format requires a date. A fixed one is written instead of the clock's, so that equal inputs
+/// The date that is written. The format requires one. A fixed date is used, so that equal inputs
 /// give equal bytes.
 const NO_DATE: &str = "1970-01-01";
 
-/// What the positions in a file mean: seconds, or metres over which a finger slides at a speed.
+/// Whether the positions in a file are times or places. Places are distances over which a finger
+/// slides at a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
-    /// Speed of the finger over a texture in space, mm/s; `None` for a vibration over time.
+    /// Speed of the finger over a texture in space, mm/s. `None` stands for a vibration over time.
     pub speed_mm_s: Option<f64>,
 }
 
 /// A tone of a vectorial band.
 pub(crate) struct Tone {
     pub(crate) hertz: f64,
-    /// Amplitude over time, 0 to 1 of full scale.
+    /// Amplitude over time, as a fraction of full scale, 0 to 1.
     pub(crate) amplitude: Vec<Point>,
 }
 
@@ -47,25 +49,25 @@ impl Space {
         libm::round(time_s * f64::from(self.timescale()) * self.per_s()) as i64
     }
 
-    /// Metres in a second; 1 for a vibration over time.
+    /// Returns the metres per second; 1 for a vibration over time.
     fn per_s(self) -> f64 {
         self.speed_mm_s.map_or(1.0, |speed| speed / 1e3)
     }
 
-    /// Length of a block of wavelets in ticks. In space it is a power of two, so that the number of
-    /// samples in a metre is whole.
+    /// Returns the length of a block of wavelets in ticks. In space it is a power of two, so that
+    /// the number of samples per metre is whole.
     fn block_ticks(self) -> i64 {
         let most = BLOCK as f64 * f64::from(self.timescale()) * self.per_s() / LEAST_RATE_HZ;
         match self.speed_mm_s {
-            // 512 samples in 200 ms: 2560 Hz, a whole number above the least rate.
+            // 512 samples in 200 ms are 2560 Hz, a whole number above the lowest rate.
             None => 200,
-            // With blocks of more than 2^13 ticks, the number of samples in a metre would not be
+            // With blocks of more than 2^13 ticks, the number of samples per metre would not be
             // whole.
             Some(_) => 1 << libm::floor(libm::log2(most.max(1.0))).min(13.0) as i64,
         }
     }
 
-    /// Number of samples of a wavelet band in a second or in a metre.
+    /// Returns the number of samples of a wavelet band per second or per metre.
     fn per_unit(self) -> f64 {
         BLOCK as f64 * f64::from(self.timescale()) / self.block_ticks() as f64
     }
@@ -77,7 +79,8 @@ impl Space {
     }
 }
 
-/// Makes a file of tones, each in a band of its own. Level 1 allows at most seven.
+/// Makes a file of tones. Each tone has its own band. Level 1 of the format allows at most seven
+/// bands.
 pub(crate) fn vectorial(
     tones: &[Tone],
     profile: &Profile,
@@ -103,7 +106,8 @@ pub(crate) fn vectorial(
     file(bands.collect(), profile, space, description)
 }
 
-/// Makes a file from samples within ±1 at the sample rate [`Space::rate_hz`].
+/// Makes a file from samples, which are coded by wavelets. Samples lie between -1 and 1, at the
+/// sample rate [`Space::rate_hz`].
 pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &str) -> Hjif {
     let blocks = samples.chunks(BLOCK).enumerate().map(|(index, samples)| {
         let mut block = samples.to_vec();
@@ -121,7 +125,8 @@ pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &
     file(vec![band], profile, space, description)
 }
 
-/// Coefficients relative to the largest one, which is stored as the last keyframe.
+/// Converts coefficients to keyframes. They are relative to the largest one, which is stored as the
+/// last keyframe.
 fn coefficients(all: &[f64]) -> Vec<Keyframe> {
     let largest = all.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let part = |x: &f64| {

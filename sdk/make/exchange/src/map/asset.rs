@@ -1,4 +1,4 @@
-//! Conversion of an image to an asset.
+//! Converts an image to an asset.
 
 use htex_author::{new_asset, representation, stored_fields};
 use htex_dsp::grid::Band;
@@ -12,11 +12,11 @@ use crate::format::Naming;
 use crate::import::ImportedAsset;
 use crate::physical::PhysicalValues;
 
-/// Makes the asset of an image. It has no licence, because the file states none. `pitch_mm` is the
-/// distance between neighbouring pixels; the full scale is the value of white.
+/// Converts an image to an asset. The asset has no licence yet. `pitch_mm` is the distance between
+/// neighbouring pixels. The full scale is the value of white.
 ///
 /// # Errors
-/// When nothing can be felt in the band at this speed.
+/// When the image has no waves within the band at this speed.
 pub(crate) fn import(
     image: &Image,
     pitch_mm: f64,
@@ -28,11 +28,11 @@ pub(crate) fn import(
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| fault(&error))?;
     let grey: Vec<f64> = image.grey.iter().map(|grey| f64::from(*grey)).collect();
-    // Rounded as they are stored, because a line may lie on an edge of the band.
+    // Rounded as they are stored, because a spectral line may lie on an edge of the band.
     let [stored_mm, speed_mm_s, force_n] =
         [pitch_mm, values.speed_mm_s, values.force_n].map(|x| f64::from(x as f32));
     let rms = htex_map::rms(image.width, stored_mm, speed_mm_s, &grey, Band::TACTILE);
-    // The level is computed from the stored number, so that both agree to the last bit.
+    // The level is rounded like the stored numbers, so that both agree to the last bit.
     let rms = f64::from(rms.map_err(|error| fault(&error))? as f32);
     let numbers = [image.width as f64, stored_mm, speed_mm_s, force_n, rms, grey.len() as f64];
     let flat = [&numbers[..], &grey].concat();

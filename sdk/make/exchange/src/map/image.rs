@@ -1,4 +1,5 @@
-//! Images: PNG files with one grey value for each pixel, and the distance between pixels.
+//! Reads and writes images: PNG files with one grey value for each pixel, and the distance between
+//! pixels.
 
 use std::io::Cursor;
 
@@ -10,32 +11,32 @@ use png::{BitDepth, ColorType, Decoder, Limits, PixelDimensions, Transformations
 
 use crate::error::Fault;
 
-/// Largest file that is read, bytes: far more than 255 by 255 pixels take.
+/// Largest file that is read, bytes. It is far more than 255 by 255 pixels take.
 const MOST_BYTES: usize = 1 << 20;
 /// Largest amount of memory that the decoder may use, bytes.
 const MOST_DECODED: usize = 4 << 20;
 /// Longest text that is unpacked, bytes.
 const MOST_TEXT: usize = 64 << 10;
-/// Distances between pixels that a map may have, mm, as the model states them.
+/// Allowed distances between pixels, mm. They come from the model `org.htex.map`.
 pub(crate) const PITCH_MM: std::ops::RangeInclusive<f64> =
     htex_map::PITCH_MM.0..=htex_map::PITCH_MM.1;
 
-/// Grey values over a surface.
+/// An image: grey values over a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
     /// Number of pixels in a row, 1 to 255.
     pub width: usize,
-    /// Grey values row by row from the top, 1 to 255 rows; 255 is white.
+    /// Grey values, row by row from the top. There are 1 to 255 rows. 0 is black, 255 is white.
     pub grey: Vec<u8>,
     /// Distance between neighbouring pixels in mm, if the file states it.
     pub pitch_mm: Option<f64>,
 }
 
-/// Reads a PNG of grey values. A colour image is accepted if all of its colours are grey.
+/// Reads a PNG file with grey values. A colour image is accepted if all of its colours are grey.
 ///
 /// # Errors
-/// When the file is not a PNG, has more than 8 bits a channel, more than 255 pixels in a row or a
-/// column, colours, transparent pixels or several frames. The fault names the place.
+/// When the file is not a PNG, or has more than 8 bits per channel, more than 255 pixels in a row
+/// or a column, colours, transparent pixels or several frames. The fault names the place.
 pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     if bytes.len() > MOST_BYTES {
         let size = bytes.len();
@@ -50,7 +51,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(failed)?;
     let (width, height, depth) = (header.width as usize, header.height as usize, header.bit_depth);
-    // Before the pixels are unpacked: a small file may state any size.
+    // Checked before the pixels are unpacked, because a small file may state any size.
     if width > MOST_SIDE || height > MOST_SIDE {
         return Err(Fault::new(
             "IHDR",
@@ -59,7 +60,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
             ),
         ));
     }
-    // A map holds a byte for each pixel, and dropping half of the bits would go unnoticed.
+    // A map stores one byte for each pixel. Nobody would notice if half of the bits were dropped.
     if depth == BitDepth::Sixteen {
         return Err(Fault::new("IHDR", "it has 16 bits a channel; save it with 8"));
     }
@@ -67,7 +68,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
     let frame = reader.next_frame(&mut pixels).map_err(failed)?;
     let info = reader.info();
-    // Only the first frame was decoded, and nothing says that it is the one that is meant.
+    // Only the first frame would be decoded, and it may not be the one that the user wants.
     if info.animation_control.is_some() {
         return Err(Fault::new("acTL", "it has several frames; save one of them"));
     }
@@ -79,8 +80,8 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     })
 }
 
-/// The rights stated in the text chunks before the pixels; empty if the file has none or cannot be
-/// read.
+/// Returns the licence and author in the text chunks before the pixels. Both are empty if the file
+/// has none or cannot be read.
 pub(crate) fn rights(bytes: &[u8]) -> Rights {
     let limits = Limits { bytes: MOST_DECODED };
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
@@ -91,14 +92,14 @@ pub(crate) fn rights(bytes: &[u8]) -> Rights {
     let plain = info.uncompressed_latin1_text.iter().map(|chunk| Rights::from_text(&chunk.text));
     let wide = info.utf8_text.iter().filter_map(|chunk| {
         let mut chunk = chunk.clone();
-        // `get_text` alone would unpack a megabyte to a gigabyte.
+        // Without this limit, `get_text` would unpack a megabyte to a gigabyte.
         chunk.decompress_text_with_limit(MOST_TEXT).ok()?;
         Some(Rights::from_text(&chunk.get_text().ok()?))
     });
     plain.chain(wide).fold(Rights::default(), Rights::or)
 }
 
-/// The grey values of expanded pixels.
+/// Returns the grey values of decoded pixels.
 fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault> {
     let place = |index: usize| format!("row {}, column {}", index / width + 1, index % width + 1);
     let one = |(index, pixel): (usize, &[u8])| {
@@ -124,7 +125,7 @@ fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault>
     pixels.chunks_exact(color.samples()).enumerate().map(one).collect()
 }
 
-/// The distance between pixels; `None` if the file states only the shape of a pixel.
+/// Returns the distance between pixels, mm, or `None` if the file states only the shape of a pixel.
 fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
     if stated.unit == Unit::Unspecified {
         return Ok(None);
@@ -148,7 +149,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
     }
 }
 
-/// Writes an image as 8-bit grey PNG with a whole number of pixels in a metre.
+/// Writes an image as an 8-bit grey PNG. The file states a whole number of pixels per metre.
 #[cfg(feature = "export")]
 pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault> {
     let failed = |error: png::EncodingError| Fault::whole(error.to_string());
@@ -158,7 +159,7 @@ pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault>
     encoder.set_color(ColorType::Grayscale);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_pixel_dims(image.pitch_mm.map(|pitch_mm| {
-        // The chunk holds whole pixels in a metre, so the distance is rounded.
+        // The chunk stores a whole number of pixels per metre, so the distance is rounded.
         let in_metre = libm::round(1e3 / pitch_mm) as u32;
         PixelDimensions { xppu: in_metre, yppu: in_metre, unit: Unit::Meter }
     }));

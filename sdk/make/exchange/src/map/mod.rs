@@ -1,11 +1,12 @@
-//! Friction maps: 8-bit PNG images, as used by electroadhesion displays (TanvasTouch). Each pixel
-//! is the friction at its place: black is the least, white the most.
+//! Reads and writes friction maps: 8-bit PNG images, as electroadhesion displays use them
+//! (TanvasTouch). Each pixel is the friction at its place, from black for the least to white for
+//! the most.
 //!
-//! An image becomes an asset of the model `org.htex.map`, which stores its pixels unchanged and
+//! An image becomes an asset with the model `org.htex.map`, which stores the pixels unchanged and
 //! follows the place of the finger. The distance between pixels comes from the chunk `pHYs` (PNG,
-//! section 11.3.4.3), unless the user gives one. An asset with such a model is exported as its own
-//! pixels. Any other texture is exported as one row of pixels: at one speed, its waves have the
-//! magnitudes that the texture plays.
+//! section 11.3.4.3), unless the user gives it. When an asset with this model is exported, the
+//! image has the same pixels. Any other texture is exported as one row of pixels. At one speed, the
+//! waves in this row have the magnitudes that the texture plays.
 
 mod asset;
 mod image;
@@ -18,5 +19,5 @@ pub(crate) use image::{PITCH_MM, rights};
 #[cfg(feature = "export")]
 pub(crate) use write::export;
 
-/// The model of the pixels.
+/// The model that plays the pixels.
 const MODEL: &str = "org.htex.map";

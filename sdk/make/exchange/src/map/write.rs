@@ -1,4 +1,4 @@
-//! Export of a texture as an image.
+//! Exports a texture as an image.
 
 use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
@@ -13,7 +13,7 @@ use crate::export::{Export, ExportedFile};
 use crate::format::Format;
 use crate::loss::Loss;
 
-/// Indices of the fields in the model's parameters.
+/// Indices in the model's parameters.
 const WIDTH: usize = 0;
 const PITCH: usize = 1;
 const SPEED: usize = 2;
@@ -21,11 +21,13 @@ const FORCE: usize = 3;
 const RMS: usize = 4;
 const GREY: usize = 6;
 
-/// Writes a texture as an image. A map keeps its own pixels. Any other texture becomes a row of
-/// pixels, fitted to what it plays at a motion (by default at its default condition).
+/// Writes a texture as an image. A friction map keeps its own pixels. Any other texture becomes a
+/// row of pixels, which is fitted to what the texture plays at a motion. The default motion is the
+/// texture's default condition.
 ///
 /// # Errors
-/// When the texture is silent, the speed is unknown, or 255 pixels cannot hold any of it.
+/// When the texture is silent, when the speed is unknown, or when 255 pixels cannot represent any
+/// part of it.
 pub(crate) fn export(
     asset: &Texture,
     export: &Export<'_>,
@@ -46,8 +48,8 @@ pub(crate) fn export(
     Ok(ExportedFile { notes, ..ExportedFile::of_asset(format, bytes) })
 }
 
-/// The parameters and the level of a texture that is a map. They come from the model that is named,
-/// or else from the one that an app plays.
+/// Returns the parameters and the level of a texture that is a friction map. They come from the
+/// named model. Without a name, they come from the model that an app would play.
 fn own(asset: &Texture, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
     let representation = asset.representation(model)?;
     match representation.model()?.id() {
@@ -114,7 +116,7 @@ fn export_fit(
     })
 }
 
-/// The loss between a reference spectrum and a shape at a level.
+/// Returns the loss between a reference spectrum and the spectrum of a shape at a level.
 fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss, ExchangeError> {
     let other = TextureSpectrum {
         magnitude: shape.into_iter().map(|m| level * m).collect(),
@@ -130,7 +132,8 @@ fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss
     })
 }
 
-/// Writes parameters as an image and reads it back. Also returns the value of white at the level.
+/// Writes parameters as an image, and reads the image back. Also returns the value of white at the
+/// level.
 fn image(
     format: &Format,
     parameters: &[f64],
@@ -153,9 +156,9 @@ fn image(
     }
 }
 
-/// Describes what the image does not state.
+/// Returns a text about what the image file does not state.
 fn said(parameters: &[f64], white: f64, asset: &Texture) -> String {
-    // As 32-bit floats, as assets store them, so that no meaningless digits are shown.
+    // Rounded to 32-bit floats, as assets store them, so that no meaningless digits are shown.
     let at = |index: usize| parameters.get(index).copied().unwrap_or_default() as f32;
     let white = white as f32;
     let unit = asset.quantity().unit();

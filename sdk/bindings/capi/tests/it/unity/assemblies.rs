@@ -35,7 +35,7 @@ pub const PLAYERS: [Target; 4] = [
     Target { name: "linux", defines: &["UNITY_STANDALONE_LINUX", "HTEX_BURST"], is_editor: false },
 ];
 
-/// Assemblies in the order in which they refer to each other.
+/// The assemblies, each after the assemblies to which it refers.
 const ASMDEFS: [&str; 4] = [
     "Runtime/Htex.asmdef",
     "Editor/Htex.Editor.asmdef",

@@ -1,17 +1,23 @@
-// The window as a surface: the mouse, or a finger on a touch screen, moves over it and sets speed and force of a texture.
+// Makes the window a surface. The mouse, or a finger on a touch screen, moves over it and sets the
+// speed and force of a texture.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using UnityEngine;
 
 namespace Htex.Samples
 {
-    /// <summary>Feeds an HtexSource that the scene leaves disabled until its texture is loaded.</summary>
+    /// <summary>
+    /// Passes speed and force to an HtexSource. The scene leaves the HtexSource disabled until its
+    /// texture is loaded.
+    /// </summary>
     [RequireComponent(typeof(HtexSource))]
     public sealed class TouchPad : MonoBehaviour
     {
-        /// <summary>Name of the texture in a folder Resources.</summary>
+        /// <summary>Name of the texture in a Resources folder.</summary>
         public string Texture = "Vinyl";
-        /// <summary>Normal force, N, without and with a pressed button.</summary>
+        /// <summary>
+        /// Normal force, N: ForceN without a pressed button, PressedForceN with one.
+        /// </summary>
         public float ForceN = 0.4f, PressedForceN = 0.8f;
 
         private HtexSource source;
@@ -32,7 +38,9 @@ namespace Htex.Samples
             source.enabled = true;
         }
 
-        /// <summary>Events of the GUI come with each setting of Active Input Handling.</summary>
+        /// <summary>
+        /// Uses GUI events, because they work with every setting of Active Input Handling.
+        /// </summary>
         private void OnGUI()
         {
             var now = Event.current;
@@ -47,7 +55,7 @@ namespace Htex.Samples
 
         private void Follow(Vector2 place)
         {
-            // Screens that do not know their density count as 96 dots per inch.
+            // If the screen does not report its density, 96 dots per inch are assumed.
             float mmPerPixel = 25.4f / (Screen.dpi > 0.0f ? Screen.dpi : 96.0f);
             source.SpeedMmS = Vector2.Distance(place, last) * mmPerPixel / Mathf.Max(Time.unscaledDeltaTime, 0.001f);
             source.ForceN = isPressed ? PressedForceN : ForceN;

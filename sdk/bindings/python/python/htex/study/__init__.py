@@ -1,4 +1,5 @@
-"""Rating studies: analyse ratings and what was felt, and plan how many participants a study needs (``pip install htex[lab]``).
+"""Analyse rating studies, in which participants rate rendered textures, and plan how many
+participants a study needs (``pip install htex[lab]``).
 
 >>> import htex
 >>> analysis = htex.study.analyse("ratings.csv", "spectra.csv", scale=(0, 6))  # doctest: +SKIP
@@ -19,7 +20,8 @@ __all__ = ["Analysis", "Finding", "Power", "TableError", "analyse", "explain", "
 
 
 def __getattr__(name: str) -> Any:
-    """Import pandas and SciPy when they are needed, and say how to have them."""
+    """Import pandas and SciPy only when they are needed. If they are missing, state how to install
+    them."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:

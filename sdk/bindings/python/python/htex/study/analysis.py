@@ -1,4 +1,4 @@
-"""The whole analysis, with the simplest comparisons first."""
+"""Compute the whole analysis of a study. The simplest comparisons come first."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .reliability import reliability
 from .results import AnalysisDict, AnovaResult, Mean, Normality, PowerRow, SpectralCorrelation
 from .spectra import Spectra
 
-#: Name and version of the form.
+#: Name and version of the JSON format of analyses.
 FORM = "htex-study-analysis/1"
-#: A medium effect (Cohen 1988), for which the paper plans.
+#: A medium effect, as Cohen's f (1988). The paper plans its number of participants for this effect.
 _MEDIUM_F = 0.25
 
 
 def compute(ratings: Ratings, spectra: Spectra | None, bound: float, program: str) -> AnalysisDict:
-    """Run every test of the study, or add a note that says why a test is missing."""
+    """Run every test of the study. If the data do not allow a test, add a note that states why."""
     notes = Notes()
     result = _about(ratings, program)
     _of_factor(result, ratings, bound, notes)
@@ -115,7 +115,7 @@ def _in_texture(result: AnalysisDict, ratings: Ratings, index: int, name: str, b
 
 
 def _with_method(test: AnovaResult | None, group: str, normality: Normality) -> AnovaResult | None:
-    """State the method next to the result, and whether its residuals are not normal."""
+    """Return a test with its method. If its residuals are not normal, state that too."""
     if test is None:
         return None
     p = normality.get("shapiro_p", 1.0)
@@ -130,8 +130,8 @@ def _normality(values: np.ndarray, group: str, notes: Notes, on: str = tests.CEL
 
 
 def _means(table: np.ndarray, *, model: list[str] | None = None, texture: Any = None) -> list[Mean]:
-    """Compute means over participants for each column with a value, named by a model, a texture, or
-    both.
+    """Compute the mean over participants of each column that has a value. Each mean is named by a
+    model, a texture, or both.
     """
     results = []
     for index, name in enumerate(model or texture):
@@ -174,7 +174,7 @@ def _power(ratings: Ratings) -> list[PowerRow]:
 
 
 def _without_absent(result: AnalysisDict) -> AnalysisDict:
-    """Leave out undefined results."""
+    """Return the analysis without results that are undefined."""
     for effect in result["anova_two_way"].values():
         effect["method"] = METHODS["anova_two_way"]
     empty = ("anova_two_way", "bands", "nemenyi")

@@ -1,8 +1,8 @@
-"""Repeated-measures ANOVA by orthonormal contrasts, with sphericity: Mauchly, Greenhouse and
-Geisser, Huynh and Feldt.
+"""Repeated-measures ANOVA by orthonormal contrasts. Tests sphericity (Mauchly), and corrects for
+its violation (Greenhouse and Geisser, Huynh and Feldt).
 
-pingouin has the same tests under the GPL. It is not used here, but the unit tests compare against
-it.
+pingouin has the same tests, but under the GPL. So it is not used here; only the unit tests compare
+the results with pingouin's.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from .notes import Notes, Undefined, complete, need_levels, need_participants, n
 from .results import AnovaResult
 
 _TEST = "a repeated-measures ANOVA"
-#: If the test of an assumption has a p-value below this, it is reported next to the result.
+#: If the test of an assumption has a p-value below this level, the violated assumption is reported
+#: next to the result.
 LEVEL = 0.05
 
 
 def one_way(table: np.ndarray, group: str, notes: Notes) -> AnovaResult | None:
-    """Test the columns of a table with a row for each participant.
+    """Test whether the columns of a table differ. The table has a row for each participant.
 
     Rows with a missing value are left out.
     """
@@ -27,7 +28,7 @@ def one_way(table: np.ndarray, group: str, notes: Notes) -> AnovaResult | None:
 
 
 def two_way(means: np.ndarray, group: str, notes: Notes) -> dict[str, AnovaResult]:
-    """Test textures, models and their interaction.
+    """Test the effects of textures, of models and of their interaction.
 
     The means are indexed by participant, texture, model.
     """
@@ -65,8 +66,8 @@ def helmert(levels: int) -> np.ndarray:
 
 
 def _effect(scores: np.ndarray, largest: float, averaged: int, group: str, notes: Notes) -> AnovaResult:
-    """Test the effect whose contrasts have ``scores``, which were computed from means of
-    ``averaged`` values.
+    """Test an effect. ``scores`` are the scores of its contrasts, which were computed from means of
+    ``averaged`` values each.
     """
     people, size = scores.shape
     centred = scores - scores.mean(axis=0)
@@ -93,22 +94,26 @@ def _effect(scores: np.ndarray, largest: float, averaged: int, group: str, notes
 
 
 def greenhouse_geisser(products: np.ndarray) -> float:
-    """(tr S)^2 / (df tr S^2) of the contrasts' covariance S (1959), 1 / df to 1; ``products`` are a multiple of S."""
+    """Return Greenhouse and Geisser's epsilon (1959), 1 / df to 1: (tr S)^2 / (df tr S^2), where S
+    is the covariance of the contrasts. ``products`` is any multiple of S."""
     size = len(products)
     return float(np.clip(np.trace(products) ** 2 / (size * (products**2).sum()), 1 / size, 1))
 
 
 def huynh_feldt(gg: float, size: int, people: int) -> float:
-    """(n df e - 2) / (df (n - 1 - df e)) for one group (1976, equation 4), at most 1."""
+    """Return Huynh and Feldt's epsilon for one group (1976, equation 4), e to 1: (n df e - 2) / (df
+    (n - 1 - df e)), where e is Greenhouse and Geisser's epsilon."""
     below = size * (people - 1 - size * gg)
     return float(np.clip((people * size * gg - 2) / below, gg, 1)) if below > 0 else 1.0
 
 
 def mauchly(products: np.ndarray, people: int) -> tuple[float, float, float, float]:
-    """Mauchly's W (1940), its statistic, and its p-value as pingouin and as R compute it.
+    """Return Mauchly's W (1940), its test statistic, and two p-values: as pingouin computes it, and
+    as R computes it.
 
-    The p-value uses two terms of Box's expansion (Anderson 2003, section 10.7.4). In one of them,
-    pingouin 0.7 uses the number of conditions instead of the number of contrasts.
+    Both p-values use two terms of Box's expansion (Anderson 2003, section 10.7.4). They differ
+    because pingouin 0.7 uses the number of conditions in one of the terms, instead of the number of
+    contrasts.
     """
     d, n = len(products), people - 1
     if d < 2:

@@ -1,4 +1,5 @@
-"""``htex study analyse`` and ``htex study power``, which the Python package's command implements.
+"""The subcommands ``htex study analyse`` and ``htex study power``. Only the Python package
+implements them.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ G*Power 3.1, for one group."""
 
 
 def run(words: list[str]) -> int | None:
-    """Run the command if Python implements it, and return its exit status; otherwise return None.
+    """Run a command that Python implements, and return its exit status. Return None for any other
+    command.
     """
     command = _command(words)
     if command is None:
@@ -36,7 +38,7 @@ def run(words: list[str]) -> int | None:
         sys.stdout.flush()
         return status
     except BrokenPipeError:
-        # A reader that has ended (`| head`) is not an error.
+        # It is not an error if the reader of the output has ended (`| head`).
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 0
     except TableError as error:
@@ -60,7 +62,7 @@ def _command(words: list[str]) -> Callable[[], int] | None:
 
 
 def rules() -> str:
-    """The codes of tables, as ``htex explain`` lists them."""
+    """Return the codes of findings in tables, as ``htex explain`` lists them."""
     return "".join(f"{rule.code:36} {rule.summary}\n" for rule in RULES)
 
 
@@ -204,7 +206,8 @@ def _power_parser() -> argparse.ArgumentParser:
 
 
 def _joined(words: list[str]) -> list[str]:
-    """Join ``--scale`` and its value into one word, because the value may begin with a dash."""
+    """Join ``--scale`` and its value into one word, because the value may begin with a minus
+    sign."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] == "--scale":
@@ -241,7 +244,7 @@ def _pairs(text: str) -> list[tuple[str, str]]:
 
 
 def _overwritten(folder: pathlib.Path, inputs: list[str]) -> str | None:
-    """Return what is wrong if the results would overwrite an input."""
+    """Return an error text if the results would overwrite an input, otherwise None."""
     for path in map(pathlib.Path, inputs):
         if path.resolve().parent == folder.resolve() and path.name in _NAMES:
             return f"{path} is an input, and the results would overwrite it; choose another folder"
@@ -255,7 +258,7 @@ _NAMES = {
 
 
 def _again(arguments: argparse.Namespace) -> str:
-    """Return the command that makes the report again."""
+    """Return the command line that makes the same report again."""
     words = ["htex study analyse --ratings", arguments.ratings]
     words += ["--spectra", arguments.spectra] if arguments.spectra else []
     words += ["--map " + ",".join(f"{ours}={theirs}" for ours, theirs in pairs) for pairs in arguments.map]
@@ -286,5 +289,5 @@ def _say_json(value: object) -> int:
 
 
 def _plain(line: str) -> str:
-    """Return a line with control characters escaped, because it may quote untrusted tables."""
+    """Return a line with escaped control characters, because it may quote untrusted tables."""
     return "".join(f"\\u{{{ord(c):x}}}" if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in line)

@@ -1,5 +1,5 @@
-"""Whether two conditions are equally good: "no difference found" does not show this, but two
-one-sided tests do.
+"""Test whether two conditions are equally good. A test that finds no difference does not show this,
+but two one-sided tests can.
 """
 
 from __future__ import annotations
@@ -13,12 +13,14 @@ from .notes import Notes, complete, need_participants, negligible, no_error_vari
 from .results import Equivalence, EquivalencePair
 from .tests import exact_ties
 
-#: Half a step on a scale of whole numbers. A study should state its own bound before it looks.
+#: Default bound: half a step on a scale of whole numbers. A study should state its own bound before
+#: anyone looks at the data.
 BOUND = 0.5
 
 
 def equivalence(table: np.ndarray, names: list[str], bound: float, group: str, notes: Notes) -> Equivalence:
-    """Run two one-sided tests for every two columns, and Wilcoxon's test on the same differences.
+    """Run two one-sided tests for every pair of columns, and Wilcoxon's test on the same
+    differences.
     """
     results = []
     for i, j in combinations(range(len(names)), 2):
@@ -33,8 +35,8 @@ def equivalence(table: np.ndarray, names: list[str], bound: float, group: str, n
 
 
 def tost(a: np.ndarray, b: np.ndarray, bound: float) -> EquivalencePair:
-    """Return the larger p-value of two one-sided paired t-tests (Schuirmann 1987), and the
-    equivalent 90 % interval.
+    """Run two one-sided paired t-tests (Schuirmann 1987). Return the larger p-value, and the 90 %
+    confidence interval of the difference, which leads to the same decision.
     """
     differences = a - b
     n, test = len(differences), "an equivalence test"
@@ -49,10 +51,10 @@ def tost(a: np.ndarray, b: np.ndarray, bound: float) -> EquivalencePair:
 
 
 def wilcoxon(differences: np.ndarray) -> tuple[float, float]:
-    """Wilcoxon's W and its two-sided p-value, as SciPy's ``wilcoxon`` computes them.
+    """Return Wilcoxon's W and its two-sided p-value, the same numbers as from SciPy's ``wilcoxon``.
 
-    SciPy takes seconds for the permutations of up to 13 differences with ties. Here all signs are
-    computed at once.
+    If there are up to 13 differences with ties, SciPy takes seconds for the permutations. This
+    function computes all combinations of signs at once.
     """
     kept = differences[differences != 0]
     ranks = stats.rankdata(np.abs(kept))

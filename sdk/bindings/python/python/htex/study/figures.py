@@ -13,9 +13,10 @@ from .regression import MOST, bank
 from .results import AnalysisDict
 from .text import level_names, stars
 
-#: Colours of models (Okabe and Ito's, which all readers can tell apart).
+#: Colours of models: the palette of Okabe and Ito, which colour-blind readers can tell apart.
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a200")
-#: Makes files reproducible for the same numbers: ids from a constant, no date, text as text.
+#: Makes equal numbers give equal files: ids come from a constant, there is no date, and text stays
+#: text.
 _STYLE: Any = {
     "svg.hashsalt": "htex",
     "svg.fonttype": "none",
@@ -26,7 +27,7 @@ _STYLE: Any = {
 
 
 def figures(result: AnalysisDict) -> dict[str, Figure]:
-    """Return every figure by its file name."""
+    """Return all figures by their file names."""
     with matplotlib.rc_context({**_STYLE, "axes.spines.right": False}):
         found = _ratings(result)
         if result["equivalence"]["pairs"]:
@@ -39,7 +40,7 @@ def figures(result: AnalysisDict) -> dict[str, Figure]:
 
 
 def to_svg(figure: Figure, title: str) -> str:
-    """Return the figure as an element of a page."""
+    """Return the figure as an SVG element for a page."""
     svg = _saved(figure, "svg", {"Date": None, "Creator": None}).decode()
     return f'<svg role="img" aria-label="{title}"' + svg[svg.index("<svg") + 4 :]
 
@@ -62,8 +63,8 @@ def _new(rows: int = 1, columns: int = 1, width: float = 4.6, height: float = 3.
 
 
 def _ratings(result: AnalysisDict) -> dict[str, Figure]:
-    """Draw figures 3B and S5: ratings by model, for all textures and for each; by texture in a
-    study with one model.
+    """Draw the paper's figures 3B and S5: ratings by model, for all textures together and for each
+    texture. In a study with one model, draw ratings by texture.
     """
     name, levels, key = level_names(result)
     overall: Any = result.get("means_texture", result["means_model"])
@@ -80,7 +81,7 @@ def _ratings(result: AnalysisDict) -> dict[str, Figure]:
 
 
 def _correlations(result: AnalysisDict) -> dict[str, Figure]:
-    """Draw figure 3A: the correlation of felt with recorded spectra."""
+    """Draw the paper's figure 3A: the correlation of felt spectra with recorded spectra."""
     found = result["spectral_correlation"]
     axis = _limits(value for mean in [*found["means"], *found["means_model"]] for value in mean["by_participant"])
     groups = {"": found["means_model"]}
@@ -101,8 +102,8 @@ def _limits(values: Any) -> tuple[float, float]:
 
 
 def _strips(means: Any, pairs: Any, levels: list[str], texture: str, label: str, limits: tuple[float, float]) -> Figure:
-    """Draw a dot for each participant, a diamond for their mean, the distribution behind them, and
-    brackets over levels that differ.
+    """Draw one column per level: a dot for each participant, a diamond for their mean, their
+    distribution in the background, and brackets over levels that differ.
     """
     figure, (ax,) = _new(width=max(4.6, 0.42 * len(levels) + 1.4))
     key = "model" if means and means[0].get("model") in levels else "texture"
@@ -123,9 +124,10 @@ def _strips(means: Any, pairs: Any, levels: list[str], texture: str, label: str,
 
 
 def _brackets(ax: Any, pairs: Any, levels: list[str], limits: tuple[float, float]) -> None:
-    """Draw brackets over levels that differ by Holm's correction, the nearest first.
+    """Draw brackets over levels that differ significantly after Holm's correction. Neighbouring
+    levels come first.
 
-    With more than 8 levels it draws none, because only their stars would be visible.
+    With more than 8 levels, draw no brackets, because only their stars would be visible.
     """
     low, high = limits
     found = [(levels.index(p["a"]), levels.index(p["b"]), p["p_holm"]) for p in pairs if p.get("p_holm", 1) < 0.05]
@@ -141,9 +143,9 @@ def _brackets(ax: Any, pairs: Any, levels: list[str], limits: tuple[float, float
 
 
 def _equivalence(result: AnalysisDict) -> Figure:
-    """Draw the 90 % interval of every difference against the bound.
+    """Draw the 90 % interval of every difference, and the bound.
 
-    Inside the bound, two levels are equally good.
+    Two levels are equally good if their interval lies within the bound.
     """
     tested = result["equivalence"]
     pairs = tested["pairs"][:60]
@@ -164,12 +166,12 @@ def _equivalence(result: AnalysisDict) -> Figure:
 
 
 def _bands(result: AnalysisDict) -> Figure:
-    """Draw figure 3C: the regressions' metrics over the number of bands, with signs of overfitting,
-    and the best bank.
+    """Draw the paper's figure 3C: metrics of the regressions over the number of bands, signs of
+    overfitting, and the best filter bank.
     """
     figure, axes = _new(2, 3, width=4.1)
     panels: list[tuple[str, str, dict[str, Any]]] = [
-        # p-values below the smallest double are 0, which a logarithmic axis cannot show.
+        # p-values that are too small for a double are 0, which a logarithmic axis cannot show.
         ("p-value, within", "p-value", {"p": lambda b: max(b["within"]["p"], 1e-300) if "within" in b else None}),
         (
             "Explained variance",
@@ -199,7 +201,7 @@ def _of(name: str) -> Any:
 
 
 def _bank(ax: Any, count: int) -> None:
-    """Draw the triangles of a bank."""
+    """Draw the triangular bands of a filter bank."""
     edges = bank(count)[1]
     for index in range(count):
         ax.plot(edges[index : index + 3], [0, 1, 0], color=_COLORS[index % len(_COLORS)])

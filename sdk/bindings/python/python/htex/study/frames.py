@@ -1,4 +1,4 @@
-"""An analysis as data frames, which are also its CSV tables."""
+"""Convert an analysis to data frames, which are also saved as its CSV tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BANDS = (
 
 
 def frames(result: AnalysisDict) -> dict[str, pd.DataFrame]:
-    """Return every table by name. Undefined values are NaN."""
+    """Return all tables by name. Undefined values are NaN."""
     means = [*result["means"], *result["means_model"], *result.get("means_texture", [])]
     found = {
         "cell-means": pd.DataFrame(result["cell_means"], columns="participant texture model repetitions mean".split()),
@@ -45,7 +45,8 @@ def _frame(rows: Iterable[Mapping[str, Any]], columns: list[str]) -> pd.DataFram
 
 
 def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a result, with its intervals, degrees of freedom and sentences, as values of columns.
+    """Return a result as column values. Intervals, degrees of freedom and sentences are spread over
+    several columns.
     """
     flat: dict[str, Any] = {}
     for key, value in row.items():
@@ -87,7 +88,7 @@ def _effects(result: AnalysisDict) -> Iterable[dict[str, Any]]:
 
 
 def effects(result: AnalysisDict) -> Iterable[tuple[str, str, Any]]:
-    """The ANOVAs: texture (empty for all), effect, test."""
+    """Yield each ANOVA as a tuple of texture (empty for all textures together), effect and test."""
     for factor in ("model", "texture"):
         if f"anova_{factor}" in result:
             yield "", factor, result[f"anova_{factor}"]  # type: ignore[literal-required]
@@ -99,7 +100,8 @@ def effects(result: AnalysisDict) -> Iterable[tuple[str, str, Any]]:
 
 
 def ranks(result: AnalysisDict) -> Iterable[tuple[str, str, Any]]:
-    """Friedman's tests: texture (empty for all), effect, test."""
+    """Yield each of Friedman's tests as a tuple of texture (empty for all textures together),
+    effect and test."""
     for key, factor in (("friedman", "model"), ("friedman_texture", "texture")):
         if key in result:
             yield "", factor, result[key]  # type: ignore[literal-required]

@@ -1,4 +1,4 @@
-"""The method behind each group of numbers, in words: test, correction, source."""
+"""Describe the method behind each group of numbers: the test, its correction and its source."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ _BANDS = (
 )
 _BEST = "The number of bands with the lowest BIC or AIC, or the highest cross-validated r2; bic_of_none is the BIC of the mean alone."
 
-#: Keyed by the group's key in the analysis.
+#: The methods, by the key of their group in the analysis.
 METHODS = {
     "anova_by_texture": _ANOVA,
     "anova_model": _ANOVA,

@@ -1,4 +1,5 @@
-"""A linear mixed model of all cell means. It also uses participants who have not rated everything.
+"""Fit a linear mixed model to all cell means. It also uses participants who have not rated
+everything.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ _TEST = "a mixed model"
 
 
 def mixed_model(ratings: Ratings) -> MixedModel:
-    """Fit fixed effects of texture, model and their interaction, and random effects of participants
-    and of their taste in each factor.
+    """Fit fixed effects of texture, of model and of their interaction. Random effects are the
+    participants, and each participant's preferences among textures and among models.
     """
     factors = [factor for factor in FACTORS if len(ratings.levels(factor)) > 1]
     need_levels(_TEST, len(ratings.levels(ratings.factor)))
@@ -43,14 +44,14 @@ def _fit(ratings: Ratings, factors: list[str]) -> Any:
     from statsmodels.regression.mixed_linear_model import MixedLM
 
     formula = "mean ~ " + " * ".join(f"C({factor}, Sum)" for factor in factors)
-    # All are variance components, because those may be 0: in statsmodels 0.14, a random intercept
-    # without variance has no solution.
+    # All random effects are variance components, because these may be 0. In statsmodels 0.14, a
+    # random intercept without variance has no solution.
     components = {"participant": "1"}
     if len(factors) > 1:
         components.update({f"participant * {factor}": f"0 + C({factor})" for factor in factors})
     model = MixedLM.from_formula(formula, ratings.cells, groups="participant", vc_formula=components)
-    # L-BFGS, the default, stops far from the optimum if a component is small. The likelihood
-    # decides between the two other methods.
+    # The default method, L-BFGS, stops far from the optimum if a component is small. So two other
+    # methods are tried, and the fit with the larger likelihood is used.
     found = [fit for method in ("bfgs", "powell") if (fit := _fitted(model, method)) is not None]
     if not found:
         raise Undefined("NOT_CONVERGED", f"{_TEST} has no solution for these ratings")
@@ -72,9 +73,9 @@ def _fitted(model: Any, method: str) -> Any:
 
 
 def _effect(fit: Any, factors: list[str], sizes: dict[str, int], people: int, cells: int) -> MixedEffect:
-    """Run Wald's test.
+    """Run Wald's test of an effect.
 
-    The error has as many degrees of freedom as the effect's interaction with participants.
+    The degrees of freedom of the error are those of the effect's interaction with participants.
     """
     names = [f"C({factor}, Sum)" for factor in factors]
     parts = [set(part.split("[")[0] for part in name.split(":")) for name in fit.model.exog_names]

@@ -1,5 +1,5 @@
-"""Why a number is missing: every test reports what the data do not allow, and the analysis collects
-these reports.
+"""Notes that state why a result is missing. If the data do not allow a test, the test reports this,
+and the analysis collects the reports.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class Undefined(Exception):
-    """A test that the data do not allow. Its code never changes its meaning."""
+    """Raised by a test that the data do not allow. A code never changes its meaning."""
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)
@@ -25,7 +25,7 @@ class Undefined(Exception):
 
 @dataclass
 class Notes:
-    """Results that are missing or need care, by the key of their group."""
+    """Notes on results that are missing or need care. Each has the key of the result's group."""
 
     all: list[Note] = field(default_factory=list)
 
@@ -34,7 +34,8 @@ class Notes:
         self.all.append(Note(group=group, code=code, message=message))
 
     def take(self, group: str, test: Callable[[], T]) -> T | None:
-        """Return the result of a test, or None and add a note that says why."""
+        """Return the result of a test. If the data do not allow it, add a note that states why, and
+        return None."""
         try:
             return test()
         except Undefined as reason:
@@ -43,25 +44,25 @@ class Notes:
 
 
 def need_participants(test: str, found: int, needed: int = 2) -> None:
-    """Refuse fewer participants than a test needs."""
+    """Raise if there are fewer participants than a test needs."""
     if found < needed:
         raise Undefined("TOO_FEW_PARTICIPANTS", f"{found} participants are too few: {test} needs at least {needed}")
 
 
 def need_levels(test: str, found: int, needed: int = 2) -> None:
-    """Refuse fewer conditions than a test compares."""
+    """Raise if there are fewer conditions than a test needs."""
     if found < needed:
         raise Undefined("TOO_FEW_LEVELS", f"{found} conditions are too few: {test} compares at least {needed}")
 
 
 def need_values(test: str, found: int, needed: int) -> None:
-    """Refuse fewer values than a test needs."""
+    """Raise if there are fewer values than a test needs."""
     if found < needed:
         raise Undefined("TOO_FEW_VALUES", f"{found} values are too few: {test} needs at least {needed}")
 
 
 def no_error_variance(test: str) -> Undefined:
-    """Refuse a table in which all participants have the same differences."""
+    """Return the error for a table in which all participants have the same differences."""
     same = "every participant has the same differences between the conditions: there is no error variance"
     return Undefined("NO_ERROR_VARIANCE", f"{same}, so {test} is not defined")
 
@@ -72,8 +73,8 @@ def complete(table: np.ndarray) -> np.ndarray:
 
 
 def negligible(squares: float, largest: float, count: int) -> bool:
-    """Return whether a sum of squares is no more than the rounding of ``count`` values up to
-    ``largest``.
+    """Return whether a sum of squares can result from rounding alone, for ``count`` values of a
+    magnitude up to ``largest``.
     """
     return squares <= (largest * 1e-13) ** 2 * count
 

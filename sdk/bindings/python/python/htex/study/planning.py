@@ -1,5 +1,5 @@
-"""Power of a repeated-measures design (within factors, one group), as in G*Power 3.1: how many
-participants a study needs.
+"""Compute how many participants a study needs: the power of a repeated-measures design (within
+factors, one group), as in G*Power 3.1.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ METHOD = (
     "F-test of repeated measures within factors, one group, as G*Power 3.1: lambda = f^2 N m epsilon / (1 - rho), degrees of "
     "freedom (m - 1) epsilon and (N - 1) (m - 1) epsilon"
 )
-#: Largest number of participants that is tried.
+#: The largest number of participants that is tried.
 _MOST = 100_000
 
 
@@ -27,7 +27,7 @@ class Power:
     alpha: float
     correlation: float
     epsilon: float
-    #: Noncentrality.
+    #: Noncentrality parameter of the F distribution.
     lambda_: float
     df: tuple[float, float]
     #: The F ratio above which the test is significant.
@@ -35,11 +35,11 @@ class Power:
     method: str = METHOD
 
     def to_dict(self) -> dict[str, object]:
-        """Return what ``htex study power --json`` prints."""
+        """Return the values that ``htex study power --json`` prints."""
         return {key.rstrip("_"): value for key, value in asdict(self).items()}
 
     def __str__(self) -> str:
-        """Return what ``htex study power`` prints."""
+        """Return the text that ``htex study power`` prints."""
         df1, df2 = (f"{df:g}" for df in self.df)
         return (
             f"{self.participants} participants: power {self.power:.4f}\n"
@@ -57,12 +57,12 @@ def power(
     correlation: float = 0.5,
     epsilon: float = 1.0,
 ) -> Power:
-    """Return the smallest number of participants that reaches ``power`` (0.8), or the power for
-    ``participants``.
+    """Return the smallest number of participants that reaches ``power`` (default 0.8). If
+    ``participants`` is given, return the power with this number instead.
 
-    ``effect`` is Cohen's f: 0.1 is small, 0.25 medium, 0.4 large. ``measurements`` is the number
-    per participant, textures times models. ``correlation`` is the correlation among them, and
-    ``epsilon`` corrects for nonsphericity.
+    ``effect`` is Cohen's f: 0.1 is small, 0.25 medium, 0.4 large. ``measurements`` is the number of
+    measurements per participant: textures times models. ``correlation`` is the correlation among
+    these measurements. ``epsilon`` corrects for nonsphericity.
 
     >>> power(0.25, 25).participants
     8

@@ -1,4 +1,4 @@
-"""Tables of ratings: long or wide, with one factor or two, complete or incomplete."""
+"""Read tables of ratings: long or wide, with one factor or two, complete or incomplete."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .rules import Finding, Findings
 from .tables import Row, Sheet, is_missing, number, read_sheet, require
 
 FACTORS = ("texture", "model")
-#: Level name used for a factor that is missing in a table.
+#: The level of a factor that a table does not have.
 ONLY = "all"
 _KEYS = ["participant", "texture", "model"]
 _KNOWN = {*_KEYS, "repetition", "rating", "simulated", "hidden_reference", "attribute"}
@@ -21,7 +21,7 @@ _UNUSED = {"response_ms", "gain_db"}
 _MOST_CONDITIONS = 1000
 #: Largest absolute rating. Sums of squares of larger ratings would lose digits.
 _LARGEST = 1e9
-#: Separates a texture from a model in column names.
+#: Characters that may separate a texture from a model in column names.
 _SEPARATORS = ("/", ":", "|")
 
 
@@ -47,19 +47,19 @@ class Ratings:
 
     @property
     def factor(self) -> str:
-        """Return the factor of the simplest comparisons: the models, or the textures if there is
-        only one model.
+        """Return the factor of the simplest comparisons: ``model``, or ``texture`` if there is only
+        one model.
         """
         return "texture" if len(self.models) == 1 and len(self.textures) > 1 else "model"
 
     def marginal(self, factor: str) -> np.ndarray:
-        """Return participants by levels of a factor, averaged over the other factor; NaN if any
-        averaged value is missing.
+        """Return a table with a row for each participant and a column for each level of a factor,
+        averaged over the other factor. A value is NaN if any of the averaged values is missing.
         """
         return np.asarray(self.means.mean(axis=2 if factor == "texture" else 1))
 
     def name_missing(self, leave_out: bool, findings: Findings) -> set[str]:
-        """Name the participants with missing conditions."""
+        """Add a finding that names the participants with missing conditions."""
         missing = np.isnan(self.means)
         incomplete = set()
         for index, participant in enumerate(self.participants):
@@ -112,9 +112,9 @@ def read_ratings(
 
 
 def _long(sheet: Sheet) -> Sheet:
-    """Convert a wide table, whose columns are conditions, to a long one.
+    """Convert a wide table, with a column for each condition, to a long table.
 
-    In a table with one factor, name the other factor.
+    If the table has only one factor, add the other factor with a single level.
     """
     absent = [factor for factor in FACTORS if factor not in sheet.names]
     if "rating" in sheet.names:
@@ -169,7 +169,8 @@ def _name_columns(sheet: Sheet) -> None:
 
 
 def _answers(sheet: Sheet, scale: tuple[float, float] | None) -> tuple[pd.DataFrame, set[str]]:
-    """Return the answers, one per line, and the participants whose answers are simulated."""
+    """Return the answers as a table with one answer per line, and the participants whose answers
+    are simulated."""
     answers: dict[tuple[str, ...], float] = {}
     counts: dict[tuple[str, ...], int] = {}
     simulated, hidden, missing = set(), 0, 0

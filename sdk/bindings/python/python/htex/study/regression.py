@@ -1,5 +1,5 @@
-"""Which properties of felt spectra predict ratings: correlation with the recorded spectrum, and
-regression on energy in bands.
+"""Test which properties of felt spectra predict ratings: their correlation with the recorded
+spectrum, and their energy in bands, by regression.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MOST = 20
 def correlations(ratings: Ratings, spectra: Spectra, notes: Notes) -> tuple[np.ndarray, list[Correlation]]:
     """Correlate every felt spectrum with its texture's recorded spectrum (Pearson).
 
-    Return an array like the means, and cells.
+    Return the correlations as an array with the shape of the mean ratings, and as a list.
     """
     values, cells = np.full(ratings.means.shape, np.nan), []
     for index in map(tuple, np.argwhere(~np.isnan(spectra.felt[..., 0]))):
@@ -43,23 +43,25 @@ def correlations(ratings: Ratings, spectra: Spectra, notes: Notes) -> tuple[np.n
 
 @dataclass
 class Rows:
-    """The data of the regressions: a row for each condition that a participant rated and felt."""
+    """The data of the regressions. There is a row for each condition for which a participant has a
+    rating and a felt spectrum."""
 
-    #: z-scores of the differences of energy, by row, then bin.
+    #: z-scores of the energy differences between felt and recorded spectra, indexed by row, then
+    #: frequency bin.
     differences: np.ndarray
     #: z-scores of the ratings.
     ratings: np.ndarray
     #: The participant of each row.
     groups: np.ndarray
-    #: Degrees of freedom of the ratings. A cell has one less than it has conditions, because its
-    #: z-scores sum to 0.
+    #: Degrees of freedom of the ratings. Each cell contributes one less than its number of
+    #: conditions, because its z-scores sum to 0.
     df: int
 
 
 def rows_of(ratings: Ratings, spectra: Spectra) -> Rows:
-    """Standardise within cells: over the models for each participant and texture.
+    """Standardise within cells. A cell holds all models of one participant and one texture.
 
-    If a study has one model, over the textures for each participant.
+    If a study has one model, a cell holds all textures of one participant.
     """
     differences = np.abs(spectra.felt**2 - spectra.recorded[None, :, None, :] ** 2)
     known = ~np.isnan(ratings.means) & ~np.isnan(differences[..., 0])
@@ -89,8 +91,8 @@ def _standardised(columns: np.ndarray) -> np.ndarray:
 
 
 def bank(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return triangular bands over log frequency that overlap by half: weights by bin and band, and
-    the edges in hertz.
+    """Return a bank of triangular bands over logarithmic frequency, each overlapping its neighbours
+    by half: the weights by bin and band, and the edges in hertz.
     """
     edges = np.arange(count + 2)
     axis = np.log(GRID_HZ / GRID_HZ[0]) / np.log(GRID_HZ[-1] / GRID_HZ[0]) * (count + 1)
@@ -123,8 +125,8 @@ def bands(rows: Rows, notes: Notes) -> tuple[list[BandResult], BestBanks | None]
 
 
 def regression(predictors: np.ndarray, rows: Rows) -> BandResult:
-    """Fit least squares with an intercept, and test with the degrees of freedom that remain after
-    z-scoring within cells.
+    """Fit a least-squares regression with an intercept. Test it with the degrees of freedom that
+    remain after z-scoring within cells.
     """
     from statsmodels.regression.linear_model import OLS
 
@@ -182,12 +184,12 @@ def _independent(design: np.ndarray) -> list[int]:
 
 
 def cross_validated_r2(predictors: np.ndarray, values: np.ndarray, groups: np.ndarray) -> float:
-    """Return the cross-validated R²: 1 minus the squared errors of predicting each group from the
-    others, relative to predicting the mean.
+    """Return the cross-validated R². It predicts each group from all other groups. It is 1 minus
+    the squared error of these predictions divided by the squared error of predicting the mean.
 
-    Unlike r2, it falls when predictors fit noise, even below 0. Accumulated triangles of all groups
-    before and after each group keep the time for all folds proportional to the number of rows,
-    instead of rows times groups.
+    Unlike R², it falls when predictors fit noise, even below 0. To save time, the triangular
+    factors of all groups before and after each group are accumulated. Then the time for all folds
+    is proportional to the number of rows, instead of rows times groups.
     """
     table = np.column_stack([np.ones(len(values)), predictors, values])
     blocks = [table[groups == group] for group in np.unique(groups)]
@@ -209,9 +211,9 @@ def cross_validated_r2(predictors: np.ndarray, values: np.ndarray, groups: np.nd
 
 
 def _triangles(blocks: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the upper triangle of all blocks before the n-th.
+    """Return, for each n, the upper triangular factor of all blocks before the n-th.
 
-    Least squares on it has the same solution.
+    Least squares on this factor has the same solution as on the blocks.
     """
     triangles = [np.empty((0, blocks[0].shape[1]))]
     for block in blocks:

@@ -1,5 +1,5 @@
-"""Intraclass correlations: whether participants agree, and whether repetitions do (McGraw and Wong
-1996).
+"""Intraclass correlations (McGraw and Wong 1996). They show whether participants agree with each
+other, and whether repeated ratings agree.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def reliability(ratings: Ratings, notes: Notes) -> Reliability:
 
 
 def icc(table: np.ndarray) -> Icc:
-    """Return the intraclass correlations of a table with a row for each rated thing and a column
-    for each rater.
+    """Return the intraclass correlations of a table. It has a row for each rated condition and a
+    column for each rater.
     """
     n, k = table.shape
     need_levels("an intraclass correlation", n)

@@ -1,4 +1,5 @@
-"""An analysis as a self-contained page: the figures of the paper, every test, and its method."""
+"""Write an analysis as a self-contained HTML page: the figures of the paper, every test, and its
+method."""
 
 from __future__ import annotations
 
@@ -58,7 +59,7 @@ def picture(name: str, figure: Figure) -> Picture:
 
 
 def to_html(result: AnalysisDict, figures: dict[str, Picture], command: str) -> str:
-    """Return the page. ``command`` is the command that makes it again."""
+    """Return the page as HTML. ``command`` is the command that makes the page again."""
     parts = [f"<h1>Analysis of a rating study</h1>{_paragraph(text.heading(result) + '.')}"]
     if result["simulated"]:
         said = "Simulated participants are among those analysed: these numbers say nothing about people."

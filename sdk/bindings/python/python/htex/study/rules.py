@@ -1,5 +1,5 @@
-"""Findings in tables of ratings and spectra: all rules in one table, and the findings of each
-table.
+"""Findings: problems in tables of ratings and spectra. This module lists all rules, and collects
+the findings of a table.
 """
 
 from __future__ import annotations
@@ -7,12 +7,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-#: Number of findings kept for one table. Further ones are only counted.
+#: Largest number of findings that are kept for one table. Further findings are only counted.
 MOST = 100
 
 
 class Rule(NamedTuple):
-    """What a code means. A code never changes its meaning."""
+    """A rule that findings refer to by its code. A code never changes its meaning."""
 
     code: str
     #: ``error``, ``warning`` or ``info``: a table with an error is not analysed.
@@ -23,23 +23,23 @@ class Rule(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A problem found in a table."""
+    """A problem that was found in a table."""
 
     code: str
     severity: str
-    #: The line, counted from 1 including the header, and the column: ``/12/rating``; empty for the
-    #: whole table.
+    #: Where the problem is: line and column, such as ``/12/rating``. Lines count from 1 and include
+    #: the header. Empty for the whole table.
     pointer: str
     message: str
 
     def __str__(self) -> str:
-        """The code, the place and the message."""
+        """Return the code, the place and the message."""
         place = f" at {self.pointer}" if self.pointer else ""
         return f"{self.code}{place}: {self.message}"
 
 
 class TableError(ValueError):
-    """A table that cannot be analysed, with all its findings."""
+    """Raised for a table that cannot be analysed. It has all findings of the table."""
 
     def __init__(self, table: str, findings: list[Finding]) -> None:
         self.table = table
@@ -58,7 +58,7 @@ class Findings:
     failed: bool = False
 
     def add(self, code: str, pointer: str, message: str) -> None:
-        """Add a finding by a rule."""
+        """Add a finding for the rule with this code."""
         rule = _BY_CODE[code]
         self.failed = self.failed or rule.severity == "error"
         if len(self.kept) < MOST:
@@ -72,7 +72,8 @@ class Findings:
         self.add(code, pointer, f"line {line}, column {column + 1} (`{name}`): {message}")
 
     def list(self) -> list[Finding]:
-        """Return all findings that were kept, and how many were dropped."""
+        """Return all findings that were kept. If some were dropped, the last one states how
+        many."""
         if not self.dropped:
             return self.kept
         message = f"{self.dropped} more findings are not shown"
@@ -85,7 +86,8 @@ class Findings:
 
 
 def explain(code: str) -> str | None:
-    """Return what a code means and what to do, or None if the code does not belong to tables."""
+    """Return the meaning of a code and how to solve the problem, or None if it is not a code of
+    tables."""
     rule = _BY_CODE.get(code.upper())
     return rule and f"{rule.code}: {rule.summary}\n\n{rule.explanation}\n\nWhat to do: {rule.fix}\n"
 

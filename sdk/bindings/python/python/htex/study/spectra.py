@@ -1,4 +1,5 @@
-"""Tables of spectra: participant, texture, model, then a magnitude at 20, 25, ..., 1000 Hz."""
+"""Read tables of spectra. The columns are participant, texture, model, and a magnitude at each of
+20, 25, ..., 1000 Hz."""
 
 from __future__ import annotations
 
@@ -14,19 +15,21 @@ from .tables import Row, Sheet, is_missing, number, read_sheet, require
 
 #: The frequencies of spectra, hertz.
 GRID_HZ = np.arange(20.0, 1001.0, 5.0)
-#: Participant and model in lines with the spectrum of a real texture.
+#: Name that stands in the columns participant and model if a line has the spectrum of a real
+#: texture.
 RECORDED = "recorded"
 _KEYS = ("participant", "texture", "model")
 _LARGEST = 1e9
 
 
 class Spectra:
-    """The spectra of the rated conditions, and each texture's recorded spectrum."""
+    """The felt spectra of the rated conditions, and the recorded spectrum of each texture."""
 
     def __init__(self, recorded: np.ndarray, felt: np.ndarray, findings: list[Finding]) -> None:
-        #: By texture, then bin.
+        #: Recorded spectra, indexed by texture, then frequency bin.
         self.recorded = recorded
-        #: By participant, texture, model, then bin; NaN where it is missing.
+        #: Felt spectra, indexed by participant, texture, model, then frequency bin; NaN where a
+        #: spectrum is missing.
         self.felt = felt
         self.findings = findings
 
@@ -37,8 +40,8 @@ def read_spectra(
     """Read and check a table of spectra for the conditions of ``ratings``: a file, its bytes, or a
     data frame.
 
-    If a condition has several lines, they need a column ``repetition``. Their magnitudes are
-    averaged.
+    If a condition has several lines, the table needs a column ``repetition``, and the magnitudes of
+    these lines are averaged.
     """
     sheet = read_sheet(table, name, renamed, all_there=False)
     for factor in ("texture", "model"):

@@ -1,4 +1,4 @@
-"""The analysis of a study: takes tables, returns data frames, figures, text, JSON and a page."""
+"""Analyse the tables of a study, and return data frames, figures, text, JSON and a page."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .text import to_text
 
 
 class Analysis:
-    """The analysis of a study. ``str()`` is its text."""
+    """The analysis of a study. ``str()`` returns it as text."""
 
     def __init__(self, ratings: Ratings, spectra: Spectra | None, bound: float) -> None:
         self.ratings = ratings
@@ -37,12 +37,13 @@ class Analysis:
         self.result: AnalysisDict = compute(ratings, spectra, bound, f"htex {__version__}")
 
     def __str__(self) -> str:
-        """Tables and sentences."""
+        """Return the analysis as text: tables and sentences."""
         return to_text(self.result)
 
     @property
     def findings(self) -> list[Finding]:
-        """The findings in the tables, without errors."""
+        """The problems that were found in the tables. None of them is an error, because a table
+        with an error is not analysed."""
         return [*self.ratings.findings, *(self.spectra.findings if self.spectra else [])]
 
     @cached_property
@@ -60,7 +61,8 @@ class Analysis:
         return {name: picture(name, figure) for name, figure in self.figures.items()}
 
     def to_dict(self) -> AnalysisDict:
-        """Return the analysis in the form of its JSON Schema, ``htex schema study-analysis``."""
+        """Return the analysis as a dict that follows its JSON Schema (``htex schema
+        study-analysis``)."""
         return self.result
 
     def to_json(self, indent: int | None = None) -> str:
@@ -69,7 +71,8 @@ class Analysis:
         return json.dumps(self.result, ensure_ascii=False, allow_nan=False, indent=indent, separators=separators)
 
     def to_html(self, command: str = "") -> str:
-        """Return the report as a single-file page. ``command`` is the command that made it."""
+        """Return the report as an HTML page in a single file. ``command`` is the command that made
+        it, and is shown on the page."""
         return to_html(self.result, self._pictures, command)
 
     def files(self, command: str = "") -> dict[str, bytes]:
@@ -94,8 +97,8 @@ class Analysis:
         """Write report.html, analysis.json, the tables as CSV, and the figures as SVG and PDF."""
         for name, data in self.files(command).items():
             path = pathlib.Path(folder, name)
-            # The user chose the folder, but its contents may come from somebody else, so no link in
-            # it is followed.
+            # The user chose the folder, but its contents may come from somebody else. So no link
+            # inside it is followed.
             if path.parent != pathlib.Path(folder) and path.parent.is_symlink():
                 problem = "it is a symbolic link, and nothing is written through one here; remove it"
                 raise PermissionError(errno.EPERM, problem, str(path.parent))
@@ -107,7 +110,7 @@ class Analysis:
 
 
 def _marked(frame: pd.DataFrame) -> pd.DataFrame:
-    """Mark as text whatever a spreadsheet would take for a formula."""
+    """Mark values as text if a spreadsheet would take them for a formula."""
 
     def mark(cell: object) -> object:
         is_formula = isinstance(cell, str) and cell.startswith(("=", "+", "-", "@", "\t", "\r"))
@@ -125,15 +128,16 @@ def analyse(
     columns: Mapping[str, str] | None = None,
     leave_out_incomplete: bool = False,
 ) -> Analysis:
-    """Analyse ratings and, optionally, felt spectra: data frames, paths of CSV or .xlsx files, or
-    their bytes.
+    """Analyse ratings and, optionally, felt spectra. Each table is a data frame, the path of a CSV
+    or .xlsx file, or the bytes of such a file.
 
-    Ratings have the columns ``participant``, ``texture``, ``model`` and ``rating``, and
-    ``repetition`` if there are several. Instead they may have a column for each condition
-    (``vinyl/ar``), or for each model. ``columns`` maps these names to the names in your table.
-    Spectra have ``participant``, ``texture``, ``model``, and magnitudes at 20, 25, ..., 1000; lines
-    with the model ``recorded`` contain the spectra of the real textures. Ratings outside ``scale``
-    are errors. Differences up to ``bound`` do not matter.
+    The table of ratings has the columns ``participant``, ``texture``, ``model`` and ``rating``, and
+    ``repetition`` if conditions were rated several times. Instead of ``rating``, it may have a
+    column for each condition (``vinyl/ar``), or for each model. ``columns`` maps these names to the
+    names in your table. The table of spectra has the columns ``participant``, ``texture``,
+    ``model``, and a magnitude at each of 20, 25, ..., 1000 Hz. Lines with the model ``recorded``
+    contain the spectra of the real textures. Ratings outside ``scale`` are errors. Two conditions
+    count as equally good if their ratings differ by at most ``bound``.
     """
     if not 0 < bound < float("inf"):
         raise ValueError(f"the bound is {bound:g}; it is above 0")

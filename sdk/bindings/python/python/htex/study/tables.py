@@ -1,6 +1,7 @@
-"""Tables as laboratories store them: CSV files, workbooks, data frames.
+"""Read tables as laboratories store them: CSV files, Excel workbooks, data frames.
 
-CSV may use ``,``, ``;`` or tabs, and decimal commas. All tables become text with positions.
+CSV files may use ``,``, ``;`` or tabs, and decimal commas. All tables are converted to text, with
+the position of each field.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
 @dataclass
 class Row:
-    """A line of a table: its number in the file, starting at 1, and its fields."""
+    """A line of a table: its line number in the file, starting at 1, and its fields."""
 
     line: int
     fields: list[str]
@@ -45,7 +46,7 @@ class Sheet:
         return self.names.index(name) if name in self.names else None
 
     def text(self, row: Row, name: str) -> str:
-        """Return a name from a line. An empty name is a finding."""
+        """Return a name from a line. Add a finding if the name is empty."""
         column = self.names.index(name)
         text = row.fields[column]
         if not text:
@@ -56,7 +57,8 @@ class Sheet:
 def read_sheet(table: Any, name: str, renamed: Mapping[str, str] | None = None, *, all_there: bool = True) -> Sheet:
     """Read a file or a data frame.
 
-    ``renamed`` maps our column names to its names. All must exist unless stated otherwise.
+    ``renamed`` maps htex's column names to the column names in the table. All of these must exist,
+    unless ``all_there`` is false.
     """
     findings = Findings(name)
     rows = [row for row in _rows(table, findings) if any(row.fields)]
@@ -75,7 +77,7 @@ def read_sheet(table: Any, name: str, renamed: Mapping[str, str] | None = None, 
 
 
 def require(sheet: Sheet, needed: tuple[str, ...]) -> None:
-    """Refuse a table that lacks required columns."""
+    """Raise if a table lacks required columns."""
     for name in needed:
         if name not in sheet.names:
             found = ", ".join(sheet.names)[:200]
@@ -85,12 +87,13 @@ def require(sheet: Sheet, needed: tuple[str, ...]) -> None:
 
 
 def is_missing(text: str) -> bool:
-    """Return whether a field states that there is no value."""
+    """Return whether the text of a field marks a missing value."""
     return text.lower() in MISSING
 
 
 def number(text: str) -> float | None:
-    """Return a finite number, with a decimal point or a decimal comma, or None."""
+    """Parse a finite number with a decimal point or a decimal comma. Return None for any other
+    text."""
     if _DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
     try:
@@ -152,8 +155,8 @@ def _csv_rows(data: bytes, findings: Findings) -> Iterator[Row]:
 
 
 def _delimiter(text: str) -> str:
-    """Return the delimiter: the one that occurs most often outside quotation marks, in the first
-    line that has any.
+    """Return the delimiter of a CSV text: the one that occurs most often, outside quotation marks,
+    in the first line that contains a delimiter.
     """
     header = next((line for line in text.splitlines() if line.strip()), "")
     plain = re.sub(r'"[^"]*"', "", header)
@@ -172,7 +175,7 @@ def _workbook_rows(data: bytes, findings: Findings) -> Iterator[Row]:
             return
         first = load_workbook(io.BytesIO(data), read_only=True, data_only=True).worksheets[0]
         rows = [[_shown(value) for value in row] for row in first.iter_rows(values_only=True)]
-    except Exception as error:  # openpyxl raises what its parsers raise.
+    except Exception as error: # openpyxl raises any exception of its parsers.
         findings.add("TABLE_XLSX_INVALID", "", f"it is no workbook: {error}")
         return
     width = max((index + 1 for row in rows for index, field in enumerate(row) if field), default=0)
@@ -189,8 +192,8 @@ def _frame_rows(frame: Any) -> Iterator[Row]:
 
 
 def _shown(value: Any) -> str:
-    """Return a value from a workbook or a data frame as a table would show it; a missing value is
-    empty.
+    """Return a value from a workbook or a data frame as text, as a table would show it. A missing
+    value becomes an empty text.
     """
     if value is None or value != value or type(value).__name__ in ("NAType", "NaTType"):
         return ""

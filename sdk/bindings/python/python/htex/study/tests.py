@@ -24,12 +24,13 @@ from .notes import (
 )
 from .results import FriedmanResult, Normality, PairResult, RankPair
 
-#: Note on the values in `normality`, reported next to the residuals for comparison with the paper.
+#: Names the values of the second test in `normality`. It is reported next to the test of the
+#: residuals, for comparison with the paper.
 CELL_MEANS = "cell means, z-scored with n-1"
 
 
 def pairs(table: np.ndarray, names: list[str], group: str, notes: Notes) -> list[PairResult]:
-    """Compare every two columns of a table.
+    """Compare every pair of columns of a table.
 
     Participants who lack one of the two values are left out.
     """
@@ -48,7 +49,8 @@ def pairs(table: np.ndarray, names: list[str], group: str, notes: Notes) -> list
 
 
 def paired_t(a: np.ndarray, b: np.ndarray) -> PairResult:
-    """A paired t-test with its effect sizes, and whether its differences are normal."""
+    """Run a paired t-test. Also return its effect sizes, and whether the differences are normally
+    distributed."""
     n, test = len(a), "a paired t-test"
     need_participants(test, n)
     differences = a - b
@@ -73,8 +75,8 @@ def paired_t(a: np.ndarray, b: np.ndarray) -> PairResult:
 
 
 def corrections(p: list[float]) -> tuple[list[float], list[float]]:
-    """Return p-values corrected by Bonferroni and by Holm (1979), whose p-values are never larger
-    and have the same guarantee.
+    """Return p-values corrected by Bonferroni, and by Holm (1979). Holm's p-values are never larger
+    than Bonferroni's and have the same guarantee.
 
     >>> corrections([0.01, 0.04, 0.03])[1]
     [0.03, 0.06, 0.06]
@@ -87,7 +89,7 @@ def corrections(p: list[float]) -> tuple[list[float], list[float]]:
 
 
 def friedman(table: np.ndarray) -> FriedmanResult:
-    """Friedman's test of the columns of a table, and Kendall's W."""
+    """Run Friedman's test on the columns of a table, and compute Kendall's W."""
     rows, test = exact_ties(complete(table)), "Friedman's test"
     need_levels(test, rows.shape[1], 3)
     need_participants(test, len(rows))
@@ -100,7 +102,7 @@ def friedman(table: np.ndarray) -> FriedmanResult:
 
 
 def nemenyi(table: np.ndarray, names: list[str]) -> list[RankPair]:
-    """Nemenyi's test of every two columns, after Friedman's."""
+    """Run Nemenyi's test on every pair of columns, after Friedman's test."""
     from scikit_posthocs import posthoc_nemenyi_friedman
 
     rows = exact_ties(complete(table))
@@ -111,12 +113,13 @@ def nemenyi(table: np.ndarray, names: list[str]) -> list[RankPair]:
 
 
 def exact_ties(means: np.ndarray) -> np.ndarray:
-    """Return means without the rounding of their sums, so that equal means tie."""
+    """Return means without the rounding errors of their sums, so that equal means tie."""
     return means.round(9)
 
 
 def normality(values: np.ndarray, on: str, group: str, notes: Notes) -> Normality:
-    """Three tests of the normality of values that were standardised by their own mean and deviation."""
+    """Run three tests of normality on values that were standardised by their own mean and standard
+    deviation."""
     values = values[~np.isnan(values)].ravel()
     result = Normality(count=len(values), on=on)
     scores = notes.take(group, lambda: z_scores(values))
@@ -130,7 +133,8 @@ def normality(values: np.ndarray, on: str, group: str, notes: Notes) -> Normalit
 
 
 def residuals(table: np.ndarray) -> np.ndarray:
-    """Return the residuals of participants by conditions after removing both effects."""
+    """Return the residuals of a table of participants by conditions, after removing the effects of
+    both."""
     rows = complete(table)
     return rows - rows.mean(axis=0) - rows.mean(axis=1, keepdims=True) + rows.mean() if len(rows) else rows
 

@@ -1,5 +1,5 @@
-"""An analysis as text: tables and sentences, with the simplest comparisons first, then methods and
-notes.
+"""Write an analysis as text: tables and sentences, with the simplest comparisons first, then the
+methods and the notes.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ ICC_HEADS = ["rated", "ratings", "ICC(A,1)", "ICC(A,k)", "ICC(C,1)", "95 % inter
 
 
 def to_text(result: AnalysisDict) -> str:
-    """The whole analysis."""
+    """Return the whole analysis as text."""
     parts = [heading(result) + "\n"]
     for title, body in _sections(result):
         if body:
@@ -59,7 +59,7 @@ def _sections(result: AnalysisDict) -> Iterable[tuple[str, str]]:
 
 
 def heading(result: AnalysisDict) -> str:
-    """Return what was rated."""
+    """Return a heading with the numbers of participants, textures, models and repetitions."""
     simulated = f" ({len(result['simulated'])} SIMULATED)" if result["simulated"] else ""
     counts = f"{len(result['textures'])} textures, {len(result['models'])} models, {result['repetitions']} repetitions"
     return f"{len(result['participants'])} participants{simulated}, {counts}"
@@ -73,7 +73,8 @@ def level_names(result: AnalysisDict) -> tuple[str, list[str], str]:
 
 
 def methods(result: AnalysisDict) -> dict[str, list[str]]:
-    """Return the methods of the groups that exist, by their text."""
+    """Return the texts of the methods that were used, each with the groups of results to which it
+    applies."""
     groups: dict[str, list[str]] = defaultdict(list)
     for key, text in result["methods"].items():
         if result.get(key):
@@ -82,19 +83,19 @@ def methods(result: AnalysisDict) -> dict[str, list[str]]:
 
 
 def p_value(value: float) -> str:
-    """A p-value: three decimals, or ``< 0.001``."""
+    """Return a p-value with three decimals, or ``< 0.001``."""
     return "p < 0.001" if value < 0.001 else f"p = {value:.3f}"
 
 
 def number_p(value: float | None) -> str:
-    """A p-value in a table: three digits."""
+    """Return a p-value for a table, with three digits."""
     if value is None:
         return ""
     return f"{value:.1e}" if value < 0.001 else f"{value:.3f}"
 
 
 def stars(value: float) -> str:
-    """Stars of a p-value."""
+    """Return the stars that mark the significance of a p-value."""
     return "*" * sum(value < level for level in (0.05, 0.01, 0.001))
 
 
@@ -114,26 +115,26 @@ def anova(test: Any) -> str:
 
 
 def failed(test: Mapping[str, Any]) -> str:
-    """Return the assumptions of a test that fail."""
+    """Return the assumptions of a test that are violated."""
     return "".join(f"; BUT {sentence}" for sentence in test.get("assumptions", []))
 
 
 def friedman(test: Any) -> str:
-    """Friedman's test in a sentence."""
+    """Describe Friedman's test in a sentence."""
     return (
         f"Friedman χ²({test['df']:g}) = {test['chi2']:.3f}, {p_value(test['p'])}; Kendall's W = {test['kendall_w']:.3f}"
     )
 
 
 def normalities(result: AnalysisDict) -> list[str]:
-    """The normality of the residuals, over all textures and in each."""
+    """Describe the normality of the residuals, over all textures and in each texture."""
     overall = [f"all textures: {normality(result['normality_of_residuals'])}"]
     each = result["normality_of_residuals_by_texture"].items()
     return overall + [f"{texture}: {normality(test)}" for texture, test in each]
 
 
 def normality(test: Any) -> str:
-    """The tests of normality that are defined, in a sentence."""
+    """Describe the tests of normality that the data allow, in a sentence."""
     names = {"ks_d": "Kolmogorov–Smirnov D", "lilliefors_d": "Lilliefors D", "shapiro_w": "Shapiro–Wilk W"}
     found = [f"{name} = {test[key]:.4f}, {p_value(test[key[:-1] + 'p'])}" for key, name in names.items() if key in test]
     return "; ".join(found) or "not defined"
@@ -152,7 +153,7 @@ def mixed(result: AnalysisDict) -> list[str]:
 
 
 def best_sentence(result: AnalysisDict) -> str:
-    """State in a sentence what the criteria prefer."""
+    """State in a sentence which numbers of bands the criteria prefer."""
     best = result["best_bands"]
     checked = f", {best['cross_validated_r2']} by cross-validated r2" if "cross_validated_r2" in best else ""
     none = "" if best["better_than_none"] else "; but the mean alone has a lower BIC, so that the bands explain nothing"
@@ -169,7 +170,7 @@ def means_table(result: AnalysisDict, by_texture: Any, overall: Any, form: str =
 
 
 def pair_table(pairs: Any) -> Table:
-    """Return the paired comparisons. Failed assumptions are named at the end of the line."""
+    """Return the paired comparisons as a table. The end of a line names violated assumptions."""
     rows = [["a", "b", *PAIR_HEADS]]
     for pair in pairs:
         row = [pair["a"], pair["b"], f"{pair['mean_difference']:.3f}"]
@@ -185,7 +186,8 @@ def pair_table(pairs: Any) -> Table:
 
 
 def equivalence_table(result: AnalysisDict) -> Table:
-    """Return which pairs are equivalent, and what the rank tests say about them."""
+    """Return a table of the pairs: whether they are equivalent, and the results of the rank
+    tests."""
     ranked = {(pair["a"], pair["b"]): pair["p"] for pair in result.get("nemenyi", [])}
     rows = [["a", "b", *EQUIVALENCE_HEADS]]
     for pair in result["equivalence"]["pairs"]:
@@ -203,7 +205,7 @@ def equivalence_table(result: AnalysisDict) -> Table:
 
 
 def reliability_table(result: AnalysisDict) -> Table:
-    """The intraclass correlations."""
+    """Return the intraclass correlations as a table."""
     rows = [["of", *ICC_HEADS]]
     for of in ("participants", "repetitions"):
         if of in result["reliability"]:
@@ -216,7 +218,8 @@ def reliability_table(result: AnalysisDict) -> Table:
 
 
 def band_table(result: AnalysisDict) -> Table:
-    """Return the regressions by number of bands, with the tests that account for z-scoring."""
+    """Return the regressions as a table with a row for each number of bands. It includes the tests
+    that account for z-scoring."""
     rows = [["bands", *BAND_HEADS]]
     for band in result["bands"]:
         within: Any = band.get("within", {})

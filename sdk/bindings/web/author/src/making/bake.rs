@@ -1,4 +1,4 @@
-//! Blocks for players on microcontrollers.
+//! Bakes textures: computes blocks of data for microcontrollers.
 
 use htex::Texture;
 use htex::format::Asset;
@@ -32,7 +32,7 @@ struct Block<'a> {
     rust: String,
 }
 
-/// Bakes a texture, which is the file. The bytes are the block.
+/// Bakes a texture. The only file is the texture. The bytes of the answer are the block.
 pub(crate) fn bake(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     let model = call.text("model")?;

@@ -1,11 +1,13 @@
-//! Converts findings, notices and spectra to documents, with settings that would help.
+//! Converts findings, warnings, notes and spectra to JSON documents. Findings, warnings and notes
+//! state the settings that would help.
 
 use htex_author::TextureSpectrum;
 use htex_base::finding::{Finding, Hint, Notice, Severity};
 use htex_format::Quantity;
 use serde::Serialize;
 
-/// Returns the settings that help, by the names in their tables. Hints use the names of flags.
+/// Returns the settings that a hint suggests, with their names in the tables of settings. The hint
+/// itself uses the names of command-line flags.
 pub(crate) fn settings(hint: Hint) -> Vec<&'static str> {
     let named = |flag: &&'static str| match *flag {
         "rate" => "rate_hz",

@@ -1,4 +1,5 @@
-//! What a fingertip feels: the difference between two textures, and the detection threshold.
+//! Computes what a fingertip can feel: the difference between two textures, and the detection
+//! threshold.
 
 use htex::Texture;
 use htex::format::Asset;
@@ -12,7 +13,8 @@ use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 
-/// How much of a difference is felt: per third-octave band, and in a few numbers.
+/// How much of a difference a fingertip can feel: in each third-octave band, and summarised in a
+/// few numbers.
 #[derive(Serialize)]
 struct FeltSummary {
     centre_hz: Vec<f64>,
@@ -26,7 +28,8 @@ struct FeltSummary {
     below_if_sensitive: bool,
 }
 
-/// Compares a texture, the second file, with a reference, the first file, each at a motion.
+/// Compares a texture with a reference, each at a motion. The first file is the reference, the
+/// second file is the texture.
 pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let sides = (call.object("reference")?, call.object("other")?);
     call.finish()?;
@@ -80,7 +83,8 @@ fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Texture, Vec<f64>), Re
     Ok((asset, magnitude))
 }
 
-/// Returns the magnitudes at which sinusoids of given frequencies reach the detection threshold.
+/// Returns the detection threshold: for each frequency, the magnitude at which a finger just feels
+/// a sinusoid.
 pub(crate) fn threshold(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let quantity = quantity(call.text("quantity")?)?;
     let frequencies = call.list("frequencies")?;

@@ -15,7 +15,7 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Fits models to recordings. The bytes are the asset.
+/// Fits models to recordings. The bytes of the answer are the asset.
 pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
     let conditions = call
@@ -36,7 +36,7 @@ pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let request = request(&reading, &fitting, &metadata, &registry)?;
     progress::start(reading.count() + request.models.len());
     let fitted = fitted(&reading, &conditions, &request);
-    // Before an error returns, because the next call must not report the steps of this one.
+    // Called before an error returns, because the next call must not report the steps of this call.
     progress::end();
     let mut fitted = fitted?;
     metadata.apply(&mut fitted.asset.manifest);
@@ -72,7 +72,8 @@ fn fitted(
     Ok(fitted?)
 }
 
-/// What the file of a fitted texture does not contain, and what ranks its models.
+/// The results of a fit that the file of the texture does not contain, and the ranking of its
+/// models.
 #[derive(Serialize)]
 struct Report<'a> {
     models: Vec<Model<'a>>,

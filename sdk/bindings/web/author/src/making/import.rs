@@ -20,7 +20,8 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Settings of formats, and the names they have here, as for recordings and fits.
+/// Names of settings: in the description of a format, and in this module, where they are the same
+/// as for recordings and fits.
 const NAMES: [(&str, &str); 5] = [
     ("speed", "speed_mm_s"),
     ("force", "force_n"),
@@ -28,7 +29,8 @@ const NAMES: [(&str, &str); 5] = [
     ("model", "models"),
     ("option", "options"),
 ];
-/// A fit setting that refuses recordings because of their findings. A signal has no findings.
+/// The fit setting that refuses recordings because of their findings. An imported signal has no
+/// findings, so imports do not have this setting.
 const STRICT: &str = "strict";
 
 fn named(setting: &str) -> &str {
@@ -52,7 +54,7 @@ struct FormatSummary<'a> {
     fitted: bool,
     settings: Vec<&'a str>,
     asks: Vec<MissingSetting>,
-    /// The profile used if none is given.
+    /// The profile that is used if none is given.
     profile: Option<&'a str>,
     keeps: &'a str,
     loses: &'a str,
@@ -118,7 +120,7 @@ fn asked(missing: Vec<Missing>) -> Vec<MissingSetting> {
     missing.into_iter().map(one).collect()
 }
 
-/// Returns what a file does not state and an import therefore needs as settings.
+/// Returns what a file does not state. An import needs each of these as a setting.
 pub(crate) fn asks(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let file = call.text("file")?.unwrap_or_default();
     call.finish()?;
@@ -126,7 +128,7 @@ pub(crate) fn asks(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&asked(missing(&file, bytes)?), Vec::new())
 }
 
-/// Imports a file. The bytes are the asset.
+/// Imports a file. The bytes of the answer are the asset.
 pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let file = call.text("file")?.unwrap_or_default();
     let mut settings = call.object("settings")?;
@@ -140,7 +142,7 @@ pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Ref
     progress::start(1);
     progress::begin("import", &file);
     let imported = htex_exchange::import(&file, bytes, &how, &registry);
-    // Before an error returns, because the next call must not report the steps of this one.
+    // Called before an error returns, because the next call must not report the steps of this call.
     progress::end();
     let imported = imported?;
     Answer::new(&Report::new(format, &imported), imported.to_bytes()?)
@@ -183,7 +185,7 @@ fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
     Ok(bytes)
 }
 
-/// What the file of an imported texture does not contain.
+/// The results of an import that the file of the texture does not contain.
 #[derive(Serialize)]
 struct Report<'a> {
     format: &'a str,

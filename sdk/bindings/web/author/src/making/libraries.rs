@@ -4,7 +4,8 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Packs textures, which are the files, under the given names. The bytes are the library.
+/// Packs textures under the given names. The files are the textures. The bytes of the answer are
+/// the library.
 pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     let textures = call.texts("textures")?;

@@ -27,7 +27,7 @@ fn answer(asset: &Asset) -> Result<Answer, Refusal> {
     Answer::new(&(), asset.to_bytes()?)
 }
 
-/// Makes a texture from parameters. The bytes are the asset.
+/// Makes a texture from parameters. The bytes of the answer are the asset.
 pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let registry = Registry::builtin();
     let models = call
@@ -89,7 +89,7 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
         ..Condition::default()
     };
     let level_rms = given.number("level")?;
-    // Only the model knows these names, and it checks them later.
+    // Only the model knows the names of its parameters. They are checked later.
     let parameters = given.object("parameters")?.rest();
     given.finish()?;
     let mut values = BTreeMap::new();
@@ -107,7 +107,8 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
     Ok(ByHandAt { condition, values, level_rms })
 }
 
-/// Makes a texture between two others, which are the files. The bytes are the asset.
+/// Makes a texture between two others, which are the two files. The bytes of the answer are the
+/// asset.
 pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let weight = call.number("weight")?;
     let weight = weight.ok_or_else(|| Refusal::argument("give a weight from 0 to 1"))?;
@@ -136,7 +137,8 @@ fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
     Ok((asset, blake3::hash(bytes).to_hex().to_string()))
 }
 
-/// Changes the metadata of a texture, which is the file. The bytes are the asset.
+/// Changes the metadata of a texture, which is the only file. The bytes of the answer are the
+/// asset.
 pub(crate) fn edit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let metadata = metadata(call.object("metadata")?)?;
     call.finish()?;

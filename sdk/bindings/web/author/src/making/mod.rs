@@ -43,5 +43,5 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
 pub(crate) const IMPORTS: &[(&str, Function)] =
     &[("asks", import::asks), ("formats", import::formats), ("import", import::import)];
 
-/// Program and version for an asset's provenance, the same as the command states.
+/// Program and version for the provenance of assets. It is the same text that the command writes.
 const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));

@@ -22,7 +22,7 @@ fn reading<'a>(mut call: Document, files: Files<'a>) -> Result<Reading<'a>, Refu
     Ok(reading)
 }
 
-/// Returns how the columns of a file are interpreted.
+/// Returns the columns of a recording, and how they are interpreted.
 pub(crate) fn columns(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;
@@ -65,7 +65,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Reads a recording. The bytes are a picture of its signals, [`Picture`].
+/// Reads a recording. The bytes of the answer are the numbers of a [`Picture`] of its signals.
 pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;

@@ -6,13 +6,14 @@ use std::cell::Cell;
 mod imported {
     #[link(wasm_import_module = "htex")]
     unsafe extern "C" {
-        /// Step `done` of `of` begins. The text describes it.
+        /// Reports that a step begins, after `done` of `of` steps are finished. The text describes
+        /// the step.
         pub(super) fn progress(done: u32, of: u32, text: *const u8, len: usize);
     }
 }
 
 thread_local! {
-    /// Number of steps that have begun, and the total.
+    /// Number of steps that have begun, and the total number of steps.
     static STEPS: Cell<(u32, u32)> = const { Cell::new((0, 0)) };
 }
 
@@ -21,8 +22,8 @@ pub(crate) fn start(steps: usize) {
     STEPS.set((0, steps as u32));
 }
 
-/// Reports that the next step begins: what it does, and with what. Reports nothing for a call that
-/// does not count steps.
+/// Reports that the next step begins. The text is `what` the step does and `with` what. Reports
+/// nothing if the call does not count steps.
 pub(crate) fn begin(what: &str, with: &str) {
     let (done, of) = STEPS.get();
     if of > 0 {
@@ -31,7 +32,7 @@ pub(crate) fn begin(what: &str, with: &str) {
     }
 }
 
-/// Stops counting.
+/// Stops counting steps.
 pub(crate) fn end() {
     STEPS.set((0, 0));
 }

@@ -1,4 +1,4 @@
-//! Recordings as sound.
+//! Converts recordings to sound.
 
 use htex_author::RecordedLoop;
 use htex_format::Quantity;
@@ -18,7 +18,7 @@ struct Loop<'a> {
     rate_hz: f64,
     level_rms: f64,
     segments: usize,
-    /// Number of its samples.
+    /// Number of samples in the loop.
     samples: usize,
 }
 
@@ -28,8 +28,8 @@ struct Condition {
     force: Option<f64>,
 }
 
-/// Makes a loop from each recording. The bytes are their samples in single precision, one loop
-/// after the other.
+/// Makes a loop from each recording. The bytes of the answer are the samples of all loops in single
+/// precision, one loop after the other.
 pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
     let conditions = call

@@ -1,4 +1,4 @@
-//! Recordings in memory, read according to settings.
+//! Reads recordings that are in memory, as their settings specify.
 
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub(crate) struct Reading<'a> {
     pub(crate) settings: ReadingSettings,
     pub(crate) spectrum: SpectrumOptions,
     pub(crate) strict: bool,
-    /// Name of the setup's response, for the provenance.
+    /// Name of the file with the setup's response, for the provenance.
     pub(crate) response: Option<String>,
     given: GivenCondition,
     recordings: Vec<(String, &'a [u8])>,
@@ -40,14 +40,14 @@ pub(crate) struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// Takes the settings for reading. The files are first the recordings, then the response, then
-    /// the trackers, in the order in which they are named.
+    /// Takes the settings for reading. The files come in this order: the recordings, the response,
+    /// the trackers.
     pub(crate) fn new(
         mut names: Document,
         settings: &mut Document,
         files: Files<'a>,
     ) -> Result<Self, Refusal> {
-        // These three are no settings of the table that follows.
+        // These three settings are not in the table that follows.
         let given = GivenCondition {
             speed: settings.number("speed_mm_s")?,
             force: settings.number("force_n")?,
@@ -101,7 +101,8 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// Reads the recordings. `conditions` has one entry for each of them, one for all, or none.
+    /// Reads the recordings. `conditions` has one entry for each recording, or one for all of them,
+    /// or none.
     pub(crate) fn takes(&self, conditions: &[GivenCondition]) -> Result<Vec<Take>, Refusal> {
         let (given, wanted) = (conditions.len(), self.recordings.len());
         if given > 1 && given != wanted {

@@ -1,4 +1,5 @@
-//! The models of a new texture, and how much of their difference from the fitted data is felt.
+//! Describes the models of a new texture, and how much of their difference from the fitted data a
+//! fingertip can feel.
 
 use htex_author::FeltError;
 use htex_format::{Asset, LeftOut, Quality};
@@ -23,7 +24,7 @@ struct At<'a> {
     felt: Option<FeltError>,
 }
 
-/// Returns the models of an asset. `felt` has an entry for each representation at each condition.
+/// Describes the models of an asset. `felt` has an entry for each representation at each condition.
 pub(super) fn represented<'a>(asset: &'a Asset, felt: &[Vec<Option<FeltError>>]) -> Vec<Model<'a>> {
     let of = |(i, representation): (usize, &'a htex_format::Representation)| {
         let felt = felt.get(i).map_or(&[][..], Vec::as_slice);
@@ -48,7 +49,7 @@ pub(super) fn represented<'a>(asset: &'a Asset, felt: &[Vec<Option<FeltError>>])
     representations.enumerate().map(of).collect()
 }
 
-/// Returns the models' ids, starting with the one whose difference is felt least.
+/// Returns the ids of the models. The model whose difference is felt least comes first.
 pub(super) fn ranked<'a>(models: &[Model<'a>]) -> Vec<&'a str> {
     let mut ranked: Vec<(f64, &str)> = Vec::new();
     for Model { model, felt, .. } in models {

@@ -1,4 +1,4 @@
-//! Licence and author of textures, for other files made from them.
+//! Returns the licence and the author of textures, for files that are made from them.
 
 use htex::format::Asset;
 use htex_format::Rights;
@@ -16,7 +16,8 @@ struct RightsSummary<'a> {
     text: String,
 }
 
-/// Returns the rights of a texture, which is the file. The bytes are their chunk for a WAV file.
+/// Returns the licence and the author of a texture, which is the only file. The bytes of the answer
+/// are a chunk with both, for a WAV file.
 pub(crate) fn rights(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     call.finish()?;
     let [bytes] = files else {

@@ -1,4 +1,4 @@
-//! Checks files, and explains the findings.
+//! Checks files, and explains findings.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ struct ValidationAnswer<'a> {
     findings: Vec<DescribedFinding<'a>>,
 }
 
-/// Validates a texture, a library or a recording, which is the file.
+/// Checks a texture, a library or a recording, which is the only file.
 pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     call.finish()?;
@@ -73,7 +73,7 @@ struct RuleExplanation {
     settings: Vec<&'static str>,
 }
 
-/// Returns what the code of a finding means; `null` for an unknown code.
+/// Returns the meaning of a finding's code, or `null` for an unknown code.
 pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let code = call.text("code")?.unwrap_or_default();
     call.finish()?;

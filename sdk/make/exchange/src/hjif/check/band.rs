@@ -10,7 +10,7 @@ use crate::json::within;
 /// Largest number of samples in a block of wavelets.
 const MOST_BLOCK: usize = 1 << 16;
 
-/// The ids of a library's effects to which a band may refer.
+/// Returns the ids of the library's effects to which a band may refer.
 pub(super) fn basis_ids(library: &[Effect]) -> BTreeSet<i64> {
     let basis = library.iter().filter(|e| e.effect_type == EffectType::Basis);
     basis.filter_map(|effect| effect.id).collect()
@@ -95,8 +95,8 @@ fn check_keyframe(keyframe: &Keyframe, before: i64, at: &str) -> Result<(), Faul
     Ok(())
 }
 
-/// Checks a block of wavelets: it must have its coefficients, and their largest value as the last
-/// keyframe.
+/// Checks a block of wavelets. It must have all its coefficients, and their largest value as the
+/// last keyframe.
 fn check_block(effect: &Effect, at: &str) -> Result<(), Fault> {
     let samples = effect.keyframes.len().saturating_sub(1);
     if (8..=MOST_BLOCK).contains(&samples) && samples.is_power_of_two() {

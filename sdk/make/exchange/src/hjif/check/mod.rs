@@ -1,6 +1,6 @@
-//! Rules for `.hjif` files: the rules of the reference software's conformance check
-//! (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that concern what is read, and
-//! limits.
+//! Checks the rules for `.hjif` files: limits, and those rules of the reference software's
+//! conformance check (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that concern
+//! the parts that are read.
 
 mod band;
 
@@ -10,7 +10,7 @@ use super::{Channel, Hjif, Perception, ReferenceDevice};
 use crate::error::Fault;
 use crate::json::within;
 
-/// Highest timescale of the profile Main, then of the profile Simple Parametric.
+/// Highest timescale: first in the profile Main, then in the profile Simple Parametric.
 const MOST_TIMESCALE: f64 = 48_000.0;
 const PARAMETRIC_TIMESCALE: f64 = 1_000.0;
 /// Largest position, in ticks.
@@ -19,8 +19,8 @@ const MOST_TICKS: f64 = 4_294_967_295.0;
 const MOST_HZ: f64 = 1e7;
 /// Largest gain of a channel.
 const MOST_GAIN: f64 = 1e6;
-/// Largest number of channels in a perception, and of bands in a channel, for level 1 and for
-/// level 2.
+/// Largest number of channels in a perception and of bands in a channel. Each constant has the
+/// number for level 1, then for level 2.
 const MOST_CHANNELS: [usize; 2] = [128, 65_536];
 const MOST_BANDS: [usize; 2] = [7, 65_536];
 
@@ -147,7 +147,7 @@ fn check_device(device: &ReferenceDevice, at: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses an id that occurs twice.
+/// Returns a fault if an id occurs twice.
 fn unique(at: &str, ids: impl Iterator<Item = Option<i64>>) -> Result<(), Fault> {
     let mut known = BTreeSet::new();
     for (index, id) in ids.enumerate() {

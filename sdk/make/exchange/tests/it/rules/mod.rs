@@ -1,5 +1,5 @@
-//! The rules of the formats, written a second time over plain JSON: what the formats' own readers
-//! refuse.
+//! The rules of the formats, implemented a second time on plain JSON. They are the rules that other
+//! readers of these formats enforce.
 
 use serde_json::Value;
 

@@ -46,21 +46,9 @@ impl Refusal {
     }
 }
 
-/// Only the text, as an error.
-#[derive(Debug)]
-struct Text(String);
-
-impl std::fmt::Display for Text {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Text {}
-
 impl From<Refusal> for Failure {
     fn from(refusal: Refusal) -> Self {
-        Self::new(refusal.status, Text(refusal.message))
+        Self::new(refusal.status, refusal.message)
     }
 }
 

@@ -55,7 +55,9 @@ impl From<Refusal> for Failure {
 impl From<HostError> for Refusal {
     fn from(error: HostError) -> Self {
         match error {
-            HostError::Option { .. } => Self::argument(error),
+            HostError::UnknownOption { .. } | HostError::OptionValue { .. } => {
+                Self::argument(error)
+            }
             HostError::Call { .. } | HostError::Broken { .. } => Self::model(error),
             other => Self::new(HTEX_STATUS_NO_MODEL, "no-model", other),
         }

@@ -8,7 +8,7 @@ use htex_check::harness::{Finding, Report, Runner};
 use serde::Serialize;
 
 use crate::failure::{Exit, Failure, Result};
-use crate::invocation::{self, Program};
+use crate::invocation;
 use crate::output::{print, print_json, show};
 
 /// How checks are run and reported.
@@ -34,7 +34,7 @@ impl CheckArgs {
         &self,
         arguments: impl IntoIterator<Item = std::ffi::OsString>,
     ) -> Result<Runner> {
-        let program = this_program()?;
+        let program = invocation::program()?;
         Ok(Runner {
             program: program.file.into(),
             arguments: program.arguments.into_iter().chain(arguments).collect(),
@@ -74,8 +74,4 @@ fn timeout(seconds: f64) -> Result<Duration> {
         // The end of a check is `Instant::now() + timeout`, which must not overflow.
         .filter(|timeout| !timeout.is_zero() && timeout.as_secs() < 1_000_000)
         .ok_or_else(|| Failure::Usage(format!("--timeout {seconds}: seconds, more than 0")))
-}
-
-fn this_program() -> Result<Program> {
-    invocation::program().map_err(Failure::other)
 }

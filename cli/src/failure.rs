@@ -121,13 +121,13 @@ impl Failure {
     /// Returns 2 for wrong usage, else 1.
     pub(crate) fn exit(&self) -> Exit {
         use DeviceError::{Rate, Setting, Unknown};
-        use HostError::{Option, UnknownModel};
+        use HostError::{OptionValue, UnknownModel, UnknownOption};
         use StorageProblem::{NoCloud, ReadOnly};
         match self.cause() {
             #[cfg(feature = "lab")]
             Self::Lab(error) if error.is_usage() => Exit::USAGE,
             Self::Usage(_)
-            | Self::Model(Option { .. } | UnknownModel { .. })
+            | Self::Model(UnknownOption { .. } | OptionValue { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
             | Self::Storage(StorageError { problem: NoCloud | ReadOnly, .. })
             | Self::Asset(

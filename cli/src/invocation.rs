@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 
 /// The arguments and the program of the current run.
 static CURRENT: Mutex<Invocation> =
@@ -17,11 +17,6 @@ struct Invocation {
     arguments: Vec<OsString>,
     program: Vec<OsString>,
 }
-
-/// Error: the program that starts the command again is unknown.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot find this program; start it by the path of its file")]
-pub(crate) struct UnknownProgram;
 
 /// The program that starts the command again, with its first arguments, e.g. `python -m htex`.
 #[derive(Debug, Clone)]
@@ -56,9 +51,11 @@ pub(crate) fn arguments() -> Vec<OsString> {
 ///
 /// # Errors
 /// When the program is unknown.
-pub(crate) fn program() -> Result<Program, UnknownProgram> {
+pub(crate) fn program() -> Result<Program> {
     let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
-    let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;
+    let (file, arguments) = current.program.split_first().ok_or_else(|| {
+        Failure::other("cannot find this program; start it by the path of its file")
+    })?;
     Ok(Program { file: file.clone(), arguments: arguments.to_vec() })
 }
 

@@ -10,7 +10,7 @@ use xtask::fuzz;
 use xtask::platform::Build;
 use xtask::plugins::{self, Way};
 use xtask::programs::run;
-use xtask::prove::Proof;
+use xtask::prove::{self, Proof};
 use xtask::release::Release;
 
 /// Developer tasks
@@ -107,7 +107,7 @@ fn main() -> Result<()> {
         Task::Web(to) => xtask::web::web(&to.out),
         Task::Studio(to) => xtask::studio::studio(&to.out),
         Task::StudioShelf => xtask::shelf::shelf(),
-        Task::Prove(proof) => proof.run(),
+        Task::Prove(proof) => prove::prove(&proof),
         Task::Generate => xtask::generated::generate(),
         Task::Census { list } => xtask::census::census(list),
     }

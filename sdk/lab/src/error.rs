@@ -11,13 +11,10 @@ use crate::response::Channel;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabError {
-    /// A file could not be read or written.
+    /// A file could not be read or written, or its contents cannot be used: a calibration matrix, a
+    /// part file, the JSON next to a recording, a recording of what was felt, an asset.
     #[error(transparent)]
     File(#[from] htex_base::files::FileError),
-    /// The contents of a file cannot be used: a calibration matrix, a part file, the JSON next to a
-    /// recording, a recording of what was felt, an asset.
-    #[error(transparent)]
-    Content(#[from] htex_base::files::ContentError),
     /// Another program is writing to this file.
     #[error("{}: another htex is {doing}; wait for it to end", .file.display())]
     Busy {

@@ -127,43 +127,41 @@ pub fn whole() -> bool {
     std::env::var_os(WHOLE).is_some()
 }
 
-impl Proof {
-    /// Runs the proof.
-    ///
-    /// # Errors
-    /// The error says which property does not hold.
-    pub fn run(&self) -> Result<()> {
-        match self {
-            Self::Outputs(options) => outputs::prove(options),
-            Self::Fuzz(options) => fuzz::fuzz(&options.bounded(600)),
-            Self::Targets => targets::prove(),
-            Self::Edges => whole_test("it", "edges::"),
-            Self::Models => whole_test("command", "checker::"),
-            Self::Grids => whole_test("it", "grid::"),
-            Self::Levels => {
-                whole_test("it", "levels::")?;
-                whole_test("command", "fit::")?;
-                whole_test("it", "voices::")
-            }
-            Self::Scenes => whole_test("it", "equivalence::"),
-            Self::Recipes => whole_test("command", "random_recipes::"),
-            Self::Fingers => {
-                whole_test("live", "finger::random")?;
-                whole_test("live", "hostile_programs")
-            }
-            Self::Zero => cargo(&ZERO, &[(WHOLE, "1")]),
-            Self::Days { hours } => {
-                let hours = hours.map(|hours| ["--hours".to_owned(), hours.to_string()]);
-                let hours: Vec<&str> = hours.iter().flatten().map(String::as_str).collect();
-                cargo(&[&DAYS, &hours[..]].concat(), &[])
-            }
-            Self::Processors => bindings::prove("processors"),
-            Self::Bare(options) => released::bare(options),
-            Self::BareRoot => released::bare_root(),
-            Self::Wine(options) => released::wine(options),
-            Self::Ways(options) => ways::prove(options),
-            Self::Costs => bindings::prove("costs"),
+/// Runs a proof.
+///
+/// # Errors
+/// The error says which property does not hold.
+pub fn prove(proof: &Proof) -> Result<()> {
+    match proof {
+        Proof::Outputs(options) => outputs::prove(options),
+        Proof::Fuzz(options) => fuzz::fuzz(&options.bounded(600)),
+        Proof::Targets => targets::prove(),
+        Proof::Edges => whole_test("it", "edges::"),
+        Proof::Models => whole_test("command", "checker::"),
+        Proof::Grids => whole_test("it", "grid::"),
+        Proof::Levels => {
+            whole_test("it", "levels::")?;
+            whole_test("command", "fit::")?;
+            whole_test("it", "voices::")
         }
+        Proof::Scenes => whole_test("it", "equivalence::"),
+        Proof::Recipes => whole_test("command", "random_recipes::"),
+        Proof::Fingers => {
+            whole_test("live", "finger::random")?;
+            whole_test("live", "hostile_programs")
+        }
+        Proof::Zero => cargo(&ZERO, &[(WHOLE, "1")]),
+        Proof::Days { hours } => {
+            let hours = hours.map(|hours| ["--hours".to_owned(), hours.to_string()]);
+            let hours: Vec<&str> = hours.iter().flatten().map(String::as_str).collect();
+            cargo(&[&DAYS, &hours[..]].concat(), &[])
+        }
+        Proof::Processors => bindings::prove("processors"),
+        Proof::Bare(options) => released::bare(options),
+        Proof::BareRoot => released::bare_root(),
+        Proof::Wine(options) => released::wine(options),
+        Proof::Ways(options) => ways::prove(options),
+        Proof::Costs => bindings::prove("costs"),
     }
 }
 

@@ -75,9 +75,9 @@ impl Failure {
         Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
     }
 
-    /// Makes an error from an error of an `htex` crate.
-    pub fn new(status: htex_status, error: impl std::error::Error + 'static) -> Self {
-        let text = Text::Of(Box::new(error));
+    /// Makes an error from an error of an `htex` crate, or from a text.
+    pub fn new(status: htex_status, error: impl Into<Box<dyn std::error::Error>>) -> Self {
+        let text = Text::Of(error.into());
         Self { status, text }
     }
 }

@@ -79,9 +79,10 @@ impl IntoPyErr for WriteError {
 impl IntoPyErr for HostError {
     fn into_py_err(self) -> PyErr {
         match self {
-            Self::Option { .. } | Self::Synthesis { .. } | Self::Rates { .. } => {
-                option(self.to_string())
-            }
+            Self::UnknownOption { .. }
+            | Self::OptionValue { .. }
+            | Self::Synthesis { .. }
+            | Self::Rates { .. } => option(self.to_string()),
             other => ModelError::new_err(other.to_string()),
         }
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use htex::model::WasmLimits;
+use htex_base::files::{FileError, FileProblem};
 use htex_build::{BuildError, BuildOptions, Destination, Job, Workbench};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -201,7 +202,10 @@ fn lines(error: &BuildError) -> Vec<String> {
 
 fn raised(error: BuildError) -> PyErr {
     match error {
-        BuildError::File(error) => of_file(&error.file, &error.error),
+        BuildError::File(FileError {
+            file,
+            problem: FileProblem::Read(error) | FileProblem::Write(error),
+        }) => of_file(&file, &error),
         other => Raised::new_err(other.to_string()),
     }
 }

@@ -53,7 +53,7 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
         findings.add(error.rule(), "/license", error.to_string());
     }
     if let Some(Err(error)) = manifest.doi.as_deref().map(check_doi) {
-        findings.add(rule::DOI_INVALID, "/doi", error.to_string());
+        findings.add(error.rule(), "/doi", error.to_string());
     }
     let (unit, wanted) = (&manifest.unit, manifest.quantity.unit());
     findings.require(unit == wanted, rule::UNIT_UNKNOWN, "/unit", || {

@@ -1,29 +1,23 @@
 //! Syntax of digital object identifiers (ISO 26324): `10.`, the number of the registrant, a slash
 //! and a name.
 
-/// The error for a text that is not a DOI.
-#[allow(missing_docs)] // The message says what a field is.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/")]
-pub struct InvalidDoi {
-    pub doi: String,
-}
+use crate::MetadataError;
 
 /// Checks the syntax of a DOI. It does not look up whether the DOI is registered.
 ///
 /// # Errors
-/// [`InvalidDoi`], which says what to write.
+/// [`MetadataError::Doi`], which says what to write.
 ///
 /// ```
 /// assert!(htex_format::check_doi("10.5281/zenodo.1234567").is_ok());
 /// assert!(htex_format::check_doi("https://doi.org/10.5281/zenodo.1").is_err());
 /// ```
-pub fn check_doi(doi: &str) -> Result<(), InvalidDoi> {
+pub fn check_doi(doi: &str) -> Result<(), MetadataError> {
     if is_doi(doi) {
         return Ok(());
     }
     let doi = doi.to_owned();
-    Err(InvalidDoi { doi })
+    Err(MetadataError::Doi { doi })
 }
 
 fn is_doi(doi: &str) -> bool {

@@ -1,9 +1,11 @@
-//! Errors of reading and writing assets.
+//! Errors of reading and writing assets, and of their metadata.
 
 use std::io;
 use std::path::PathBuf;
 
-use htex_base::finding::{Finding, summary};
+use htex_base::finding::{Finding, Rule, summary};
+
+use crate::rules as rule;
 
 /// Error of reading an asset.
 ///
@@ -87,4 +89,36 @@ pub enum WriteError {
         /// The encoder's message.
         problem: String,
     },
+}
+
+/// Error: a text of the metadata, such as a licence, does not have the form that it must have.
+#[allow(missing_docs)] // The message says what a field is.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MetadataError {
+    /// The id of a licence is not in the list, which grows over time.
+    #[error(
+        "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
+    )]
+    UnlistedLicense { id: String },
+    /// The text is not an SPDX expression.
+    #[error("{license:?} is not an SPDX expression ({reason}); write one like CC-BY-4.0")]
+    License { license: String, reason: String },
+    /// The text is not a DOI.
+    #[error(
+        "{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/"
+    )]
+    Doi { doi: String },
+}
+
+impl MetadataError {
+    /// Returns the broken rule. For an unlisted licence it is a warning, otherwise an error.
+    #[must_use]
+    pub fn rule(&self) -> &'static Rule {
+        match self {
+            Self::UnlistedLicense { .. } => rule::LICENSE_UNKNOWN,
+            Self::License { .. } => rule::LICENSE_INVALID,
+            Self::Doi { .. } => rule::DOI_INVALID,
+        }
+    }
 }

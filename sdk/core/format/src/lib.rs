@@ -62,16 +62,16 @@ pub use asset::Asset;
 pub use block::{round_parameters, round_within, stored_bytes};
 pub use check_manifest::is_extension_name;
 pub use document::{Document, DocumentRules, VersionedJson};
-pub use doi::{InvalidDoi, check_doi};
+pub use doi::check_doi;
 pub use entry_ranges::{EntryRange, entry_ranges};
-pub use error::{ReadError, WriteError};
+pub use error::{MetadataError, ReadError, WriteError};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use htex_base::files::{remove_unfinished, replace_file, write_file};
 pub use htex_base::finding::{FileReport, Finding, Report, Severity};
 pub use htex_model::Band;
 pub use json_text::{JsonError, parse_json};
 pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
-pub use license::{LicenseError, check_license};
+pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
     AtCondition, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,

@@ -80,12 +80,22 @@ pub enum HostError {
         call: &'static str,
         what: String,
     },
-    /// A fit option is unknown, or its value is invalid.
-    #[error("model {model}: option {error}")]
-    Option {
+    /// The model has no fit option of this name.
+    #[error("model {model}: option `{name}` is unknown; there are {known}")]
+    UnknownOption {
         model: String,
-        /// The option and its allowed values.
-        error: Box<OptionError>,
+        name: String,
+        /// The names of the model's options.
+        known: String,
+    },
+    /// The value of a fit option is neither one of its choices nor a number in its range.
+    #[error("model {model}: option `{name}` is `{text}`; it takes {takes}")]
+    OptionValue {
+        model: String,
+        name: Box<str>,
+        text: Box<str>,
+        /// The choices, or the kind of number, the range and the unit.
+        takes: Box<str>,
     },
     /// The method of synthesis is unknown, or its number is out of range.
     #[error(
@@ -103,35 +113,4 @@ impl HostError {
     pub(crate) fn loading<E: Display>(origin: impl Display) -> impl FnOnce(E) -> Self {
         move |error| Self::Load { path: origin.to_string(), what: error.to_string() }
     }
-}
-
-/// A fit option is unknown, or its value is invalid.
-///
-/// ```
-/// use htex_host::{HostError, OptionError, Registry};
-/// let registry = Registry::builtin();
-/// let Err(HostError::Option { error, .. }) = registry.find("bands")?.options(&[("colour", "red")]) else {
-///     unreachable!();
-/// };
-/// assert!(matches!(*error, OptionError::Unknown { .. }));
-/// # Ok::<(), HostError>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum OptionError {
-    /// The model has no option of this name.
-    #[error("`{name}` is unknown; there are {known}")]
-    Unknown {
-        name: String,
-        /// The names of the model's options.
-        known: String,
-    },
-    /// The value is neither one of the option's choices nor a number in its range.
-    #[error("`{name}` is `{text}`; it takes {takes}")]
-    Value {
-        name: String,
-        text: String,
-        /// The choices, or the kind of number, the range and the unit.
-        takes: String,
-    },
 }

@@ -58,7 +58,7 @@ mod wasm;
 pub use clock::Instant;
 pub use decimal::decimal;
 pub use descriptor::{DescriptorError, read_descriptor};
-pub use error::{HostError, OptionError};
+pub use error::HostError;
 pub use htex_base::native::folders;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{

@@ -2,7 +2,7 @@
 
 use htex_model::FitOption;
 
-use crate::{HostError, LoadedModel, OptionError};
+use crate::{HostError, LoadedModel};
 
 impl LoadedModel {
     /// Returns one value for each of the model's options. `given` contains pairs of an option's
@@ -10,34 +10,48 @@ impl LoadedModel {
     /// `given` has its default.
     ///
     /// # Errors
-    /// [`HostError::Option`] if an option is unknown or its value is not allowed.
+    /// [`HostError::UnknownOption`], or [`HostError::OptionValue`] with the allowed values.
+    ///
+    /// ```
+    /// use htex_host::{HostError, Registry};
+    /// let registry = Registry::builtin();
+    /// let error = registry.find("bands")?.options(&[("colour", "red")]).unwrap_err();
+    /// assert!(matches!(error, HostError::UnknownOption { .. }));
+    /// # Ok::<(), HostError>(())
+    /// ```
     pub fn options(&self, given: &[(&str, &str)]) -> Result<Vec<f64>, HostError> {
-        let in_model =
-            |error| HostError::Option { model: self.id().to_owned(), error: Box::new(error) };
         let options = &self.descriptor().options;
         let mut values = self.descriptor().default_options();
         for (name, text) in given {
             let Some(i) = options.iter().position(|o| o.name == *name) else {
                 let known: Vec<&str> = options.iter().map(|o| o.name.as_str()).collect();
-                return Err(in_model(OptionError::Unknown {
+                return Err(HostError::UnknownOption {
+                    model: self.id().to_owned(),
                     name: (*name).to_owned(),
                     known: known.join(", "),
-                }));
+                });
             };
-            values[i] = parse(&options[i], text).map_err(in_model)?;
+            values[i] = parse(&options[i], text).map_err(|takes| HostError::OptionValue {
+                model: self.id().to_owned(),
+                name: (*name).into(),
+                text: (*text).into(),
+                takes: takes.into(),
+            })?;
         }
         Ok(values)
     }
 }
 
-fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
-    let wrong =
-        |takes| OptionError::Value { name: option.name.clone(), text: text.to_owned(), takes };
+/// Reads a value of an option.
+///
+/// # Errors
+/// What the option takes, if the value is something else.
+fn parse(option: &FitOption, text: &str) -> Result<f64, String> {
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);
         return choice
             .map(|i| i as f64)
-            .ok_or_else(|| wrong(format!("one of {}", option.choices.join(", "))));
+            .ok_or_else(|| format!("one of {}", option.choices.join(", ")));
     }
     let value: Option<f64> = text.parse().ok();
     value
@@ -46,6 +60,6 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
         .ok_or_else(|| {
             let kind = if option.integer { "a whole number" } else { "a number" };
             let FitOption { min, max, unit, .. } = option;
-            wrong(format!("{kind} from {min} to {max} {unit}"))
+            format!("{kind} from {min} to {max} {unit}")
         })
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_base::files::ContentError;
+use htex_base::files::FileError;
 use serde::Deserialize;
 
 use crate::error::LabError;
@@ -42,7 +42,7 @@ impl Calibration {
     /// with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`LabError::Content`] if the file cannot be read, or does not contain a matrix of full rank.
+    /// [`LabError::File`] if the file cannot be read, or does not contain a matrix of full rank.
     pub fn read(path: &Path) -> Result<Self, LabError> {
         in_calibration(path, text_of(path).and_then(|text| Self::from_text(path, &text)))
     }
@@ -159,5 +159,5 @@ type Problem = Box<dyn std::error::Error>;
 fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, LabError> {
     let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
     let result = result.map_err(|problem| format!("{problem}; {advice}"));
-    Ok(result.map_err(ContentError::in_file(path))?)
+    Ok(result.map_err(FileError::in_file(path))?)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_base::files::{AtFile, ContentError, OwnFolder};
+use htex_base::files::{AtFile, FileError, OwnFolder};
 use serde::Serialize;
 
 use crate::error::LabError;
@@ -73,7 +73,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, L
 /// # Errors
 /// If the header of a part file is damaged, or a recording cannot be written.
 pub fn recover(folder: &Path) -> Result<Vec<TakeReport>, LabError> {
-    let parts = files::part_files(folder).map_err(ContentError::in_file(folder))?;
+    let parts = files::part_files(folder).map_err(FileError::in_file(folder))?;
     let mut recovered = Vec::new();
     for path in &parts {
         match finish(folder, path) {

@@ -10,7 +10,7 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_base::files::{AtFile, ContentError, OwnFolder};
+use htex_base::files::{AtFile, FileError, OwnFolder};
 
 use crate::error::LabError;
 use crate::record::data::{TakeData, TakeHeader};
@@ -117,17 +117,17 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`LabError::Content`] if the file cannot be read or is not a part file. [`LabError::Busy`] while
+/// [`LabError::File`] if the file cannot be read or is not a part file. [`LabError::Busy`] while
 /// another program writes to it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
-    let mut file = opened.map_err(ContentError::in_file(path))?;
+    let mut file = opened.map_err(FileError::in_file(path))?;
     // The program that writes a part file holds its lock.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         return Err(LabError::busy(path, "recording into it"));
     }
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).map_err(ContentError::in_file(path))?;
+    file.read_to_end(&mut bytes).map_err(FileError::in_file(path))?;
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };
@@ -140,13 +140,13 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
                 htex_base::finding::plain(&error)
             )
         })
-        .map_err(ContentError::in_file(path))?;
+        .map_err(FileError::in_file(path))?;
     let own = files::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
         let problem = format!(
             "it is the part of {own}; give it that name again, so that no other take is replaced"
         );
-        return Err(ContentError::new(path, problem).into());
+        return Err(FileError::content(path, problem).into());
     }
     Ok(Some(chunks(header, &bytes[end + 1..])))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use htex_author::recording::Role;
-use htex_base::files::{AtFile, ContentError, OwnFolder};
+use htex_base::files::{AtFile, FileError, OwnFolder};
 use htex_device::Input;
 
 use crate::error::LabError;
@@ -147,7 +147,7 @@ impl Session {
         match ran.and(flushed) {
             Ok(()) => finish(&folder, &path)?.ok_or_else(|| {
                 let problem = "it is empty after a take; the disk may be damaged";
-                ContentError::new(path, problem).into()
+                FileError::content(path, problem).into()
             }),
             Err(error) => Err(with_kept(error, finish(&folder, &path)?)),
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use htex_author::recording::read_recording;
 use htex_author::settings::ReadingSettings;
 use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, segment_take};
-use htex_base::files::{ContentError, open_regular, read_regular};
+use htex_base::files::{FileError, open_regular, read_regular};
 use htex_format::Quantity;
 use serde::Deserialize;
 use serde_json::Value;
@@ -33,7 +33,7 @@ impl KnownTake {
     /// such JSON, or if the JSON belongs to a recording in another format.
     ///
     /// # Errors
-    /// [`LabError::Content`] if the JSON describes a take but has another version or unknown
+    /// [`LabError::File`] if the JSON describes a take but has another version or unknown
     /// keys.
     ///
     /// ```
@@ -46,7 +46,7 @@ impl KnownTake {
         let header = match header(&beside) {
             Ok(Some(header)) => header,
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-                return Err(ContentError::new(beside, error).into());
+                return Err(FileError::content(beside, error).into());
             }
             _ => return Ok(None),
         };

@@ -8,7 +8,7 @@ use htex_author::recording::read_recording;
 use htex_author::{
     Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, segment_take,
 };
-use htex_base::files::{AtFile, ContentError};
+use htex_base::files::{AtFile, FileError};
 use htex_base::finding::as_text;
 use htex_dsp::Band;
 use htex_format::{Asset, Condition, Quantity};
@@ -50,24 +50,24 @@ impl Reference {
     /// signals is an error.
     ///
     /// # Errors
-    /// [`LabError::Content`] if it cannot be read as a texture from 20 to 1000 Hz.
+    /// [`LabError::File`] if it cannot be read as a texture from 20 to 1000 Hz.
     pub fn from_recording(
         take: &Take,
         file: &Path,
         options: &SpectrumOptions,
         strict: bool,
     ) -> Result<Self, LabError> {
-        let reading = segment_take(take, options, strict).map_err(ContentError::in_file(file))?;
-        Ok(Self::average(&[reading.spectra], options).map_err(ContentError::in_file(file))?)
+        let reading = segment_take(take, options, strict).map_err(FileError::in_file(file))?;
+        Ok(Self::average(&[reading.spectra], options).map_err(FileError::in_file(file))?)
     }
 
     /// Returns the recorded spectrum that an asset stores, at the condition nearest to a motion.
     /// Without a known motion, this is the first condition.
     ///
     /// # Errors
-    /// [`LabError::Content`] if the asset cannot be read or does not have the spectrum.
+    /// [`LabError::File`] if the asset cannot be read or does not have the spectrum.
     pub fn from_asset(file: &Path, motion: Exploration) -> Result<Self, LabError> {
-        let asset = Asset::open(file).map_err(ContentError::in_file(file))?;
+        let asset = Asset::open(file).map_err(FileError::in_file(file))?;
         let conditions = asset.manifest.conditions.iter().enumerate();
         let off = |condition: &Condition| {
             let off = |own: Option<f64>, wanted: Option<f64>| match own.zip(wanted) {
@@ -79,10 +79,10 @@ impl Reference {
         let nearest = conditions.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
         let spectra = asset.reference.as_ref();
         let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
-        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)").map_err(ContentError::in_file(file))?;
+        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)").map_err(FileError::in_file(file))?;
         let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
         let whole = Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude);
-        Ok(whole.map_err(ContentError::in_file(file))?)
+        Ok(whole.map_err(FileError::in_file(file))?)
     }
 
     fn average(
@@ -112,7 +112,7 @@ impl Reference {
 ///
 /// # Errors
 /// The errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no recordings.
-/// [`LabError::Content`] if a recording does not belong to its trial or has no spectrum, or if the
+/// [`LabError::File`] if a recording does not belong to its trial or has no spectrum, or if the
 /// spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
@@ -162,7 +162,7 @@ pub fn felt_spectra(
                 recordings += 1;
             }
             let felt = Reference::average(&parts, options)
-                .map_err(ContentError::in_file(folder.join(participant)))?;
+                .map_err(FileError::in_file(folder.join(participant)))?;
             quantities.insert(felt.quantity);
             rows.push(row(participant, &texture, &model, &felt));
             textures.insert(texture);
@@ -177,7 +177,7 @@ pub fn felt_spectra(
                 "the spectrum of the real texture {texture} is missing; name its recording (--recorded {texture}=FILE) or the study \
                  whose asset has it (--study)"
             );
-            return Err(ContentError::new(folder, problem).into());
+            return Err(FileError::content(folder, problem).into());
         };
         quantities.insert(reference.quantity);
         rows.push(row(RECORDED, texture, RECORDED, reference));
@@ -200,7 +200,7 @@ fn part(
         let problem = format!(
             "it is not the recording that was made in the trial ({problem}); restore it from a copy"
         );
-        LabError::from(ContentError::new(&file, problem))
+        LabError::from(FileError::content(&file, problem))
     };
     // The name comes from the answers, and they may come from somebody else.
     if felt.file.split('/').any(|part| matches!(part, "" | "." | "..")) {
@@ -213,9 +213,9 @@ fn part(
     let header = header_beside(&beside)
         .reading(&beside)?
         .ok_or("it does not describe a recording")
-        .map_err(ContentError::in_file(&beside))?;
-    let take = open_take(&file, &header).map_err(ContentError::in_file(&file))?;
-    Ok(segment_take(&take, options, false).map_err(ContentError::in_file(&file))?.spectra)
+        .map_err(FileError::in_file(&beside))?;
+    let take = open_take(&file, &header).map_err(FileError::in_file(&file))?;
+    Ok(segment_take(&take, options, false).map_err(FileError::in_file(&file))?.spectra)
 }
 
 fn open_take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use htex_base::files::FileError;
+use htex_base::files::FileProblem;
 use htex_base::storage::{Location, StorageProblem};
 use htex_host::WasmLimits;
 use rayon::prelude::*;
@@ -352,7 +352,7 @@ impl Build {
 /// Returns whether an input file caused the error because it is missing or cannot be read.
 fn is_of_input(error: &BuildError) -> bool {
     match error {
-        BuildError::File(FileError { is_output, .. }) => !is_output,
+        BuildError::File(error) => !matches!(error.problem, FileProblem::Write(_)),
         BuildError::Storage(error) => matches!(error.problem, StorageProblem::Missing),
         _ => false,
     }

@@ -75,8 +75,9 @@ pub enum Writes {
     Map,
 }
 
+/// The function that writes what is played to a format.
 #[cfg(feature = "export")]
-pub(crate) type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
+pub type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
 #[cfg(feature = "export")]
 type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 

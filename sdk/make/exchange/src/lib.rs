@@ -66,9 +66,9 @@ pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
 #[cfg(feature = "export")]
 pub use export::{ActuatorPlay, Export, ExportedFile, export, export_scene};
-#[cfg(feature = "export")]
-pub use format::Writes;
 pub use format::{Format, Naming, RATE_HZ, Reads, Sampling, Signal};
+#[cfg(feature = "export")]
+pub use format::{WriteSignal, Writes};
 pub use formats::{FORMATS, imported, imported_signals};
 #[cfg(feature = "export")]
 pub use formats::{exported, formats_table};

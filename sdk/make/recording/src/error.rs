@@ -198,6 +198,12 @@ impl From<ReadProblem> for Fault {
     }
 }
 
+impl From<io::Error> for ReadProblem {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
 impl From<io::Error> for Fault {
     fn from(error: io::Error) -> Self {
         ReadProblem::Io(error).into()

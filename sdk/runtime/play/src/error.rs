@@ -252,7 +252,10 @@ impl Error {
             Self::Library(_) => ErrorKind::Library,
             Self::NoRepresentation { .. } => ErrorKind::NoRepresentation,
             Self::Model(
-                HostError::Option { .. } | HostError::Synthesis { .. } | HostError::Rates { .. },
+                HostError::UnknownOption { .. }
+                | HostError::OptionValue { .. }
+                | HostError::Synthesis { .. }
+                | HostError::Rates { .. },
             ) => ErrorKind::Option,
             Self::Model(HostError::Call { .. } | HostError::Broken { .. }) => ErrorKind::Model,
             Self::Model(_)

@@ -46,28 +46,18 @@ impl Refusal {
     }
 }
 
-/// An error that has only a text.
-#[derive(Debug)]
-struct Text(String);
-
-impl std::fmt::Display for Text {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Text {}
-
 impl From<Refusal> for Failure {
     fn from(refusal: Refusal) -> Self {
-        Self::new(refusal.status, Text(refusal.message))
+        Self::new(refusal.status, refusal.message)
     }
 }
 
 impl From<HostError> for Refusal {
     fn from(error: HostError) -> Self {
         match error {
-            HostError::Option { .. } => Self::argument(error),
+            HostError::UnknownOption { .. } | HostError::OptionValue { .. } => {
+                Self::argument(error)
+            }
             HostError::Call { .. } | HostError::Broken { .. } => Self::model(error),
             other => Self::new(HTEX_STATUS_NO_MODEL, "no-model", other),
         }

@@ -42,7 +42,7 @@ use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
 pub use batch::Batch;
-pub use error::{AtFile, ContentError, FileError};
+pub use error::{AtFile, FileError, FileProblem};
 #[cfg(feature = "key")]
 pub use key::Key;
 pub use lines::bounded_lines;

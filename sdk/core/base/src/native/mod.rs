@@ -14,12 +14,8 @@ pub use crate::table_of_symbols;
 #[cfg(any(unix, windows))]
 use std::error::Error;
 use std::ffi::OsStr;
+use std::io;
 use std::path::{Path, absolute};
-
-/// Error: a library cannot be loaded. Contains the message of the system's loader.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct LoadError(String);
 
 #[derive(Debug, Clone, Copy)]
 pub struct Library(&'static Loaded);
@@ -49,10 +45,10 @@ impl Library {
     ///
     /// # Errors
     /// If the file does not exist, or is not a library for this machine.
-    pub unsafe fn from_file(path: &Path) -> Result<Self, LoadError> {
+    pub unsafe fn from_file(path: &Path) -> io::Result<Self> {
         // A loader searches its own folders for a bare name, and only an absolute path keeps it
         // from that.
-        let path = absolute(path).map_err(|error| LoadError(error.to_string()))?;
+        let path = absolute(path)?;
         // SAFETY: guaranteed by the caller.
         unsafe { load(path.as_os_str()) }
     }
@@ -64,7 +60,7 @@ impl Library {
     ///
     /// # Errors
     /// If the loader does not find a library, or cannot load it.
-    pub unsafe fn from_system(name: &str) -> Result<Self, LoadError> {
+    pub unsafe fn from_system(name: &str) -> io::Result<Self> {
         // SAFETY: guaranteed by the caller.
         unsafe { load(OsStr::new(name)) }
     }
@@ -78,7 +74,7 @@ impl Library {
     ///
     /// # Errors
     /// If there is no such library, or it cannot be loaded.
-    pub unsafe fn from_name(path: &str) -> Result<Self, LoadError> {
+    pub unsafe fn from_name(path: &str) -> io::Result<Self> {
         let file = Path::new(path);
         let is_bare = file.components().count() == 1 && !file.is_absolute();
         if !is_bare || file.is_file() {
@@ -87,7 +83,7 @@ impl Library {
         }
         // SAFETY: guaranteed by the caller.
         let found = unsafe { Self::from_system(path) };
-        found.map_err(|LoadError(reason)| LoadError(format!("{reason}{SEARCHED}")))
+        found.map_err(|reason| io::Error::other(format!("{reason}{SEARCHED}")))
     }
 
     /// Loads the first of several libraries that the system's loader finds.
@@ -97,16 +93,16 @@ impl Library {
     ///
     /// # Errors
     /// If the loader finds none of them. The message gives the reason for each.
-    pub unsafe fn installed(names: &[&str]) -> Result<Self, LoadError> {
+    pub unsafe fn installed(names: &[&str]) -> io::Result<Self> {
         let mut reasons = Vec::new();
         for name in names {
             // SAFETY: guaranteed by the caller.
             match unsafe { Self::from_system(name) } {
                 Ok(library) => return Ok(library),
-                Err(LoadError(reason)) => reasons.push(reason),
+                Err(reason) => reasons.push(reason.to_string()),
             }
         }
-        Err(LoadError(reasons.join("; ")))
+        Err(io::Error::other(reasons.join("; ")))
     }
 
     /// Returns the function or variable with this name.
@@ -170,18 +166,18 @@ unsafe fn symbol<T>(loaded: &Loaded, _: &str) -> Option<T> {
 }
 
 #[cfg(not(any(unix, windows)))]
-unsafe fn load(_: &OsStr) -> Result<Library, LoadError> {
+unsafe fn load(_: &OsStr) -> io::Result<Library> {
     let none = "there are no native libraries on this platform; use a WASM module";
-    Err(LoadError(none.to_owned()))
+    Err(io::Error::other(none))
 }
 
 /// # Safety
 /// Runs the library's initialisers.
 #[cfg(any(unix, windows))]
-unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
+unsafe fn load(name: &OsStr) -> io::Result<Library> {
     // SAFETY: guaranteed by the caller.
     let loaded = unsafe { libloading::Library::new(name) };
-    let library = loaded.map_err(|error| LoadError(reason(&error)))?;
+    let library = loaded.map_err(|error| io::Error::other(reason(&error)))?;
     Ok(Library(Box::leak(Box::new(library))))
 }
 

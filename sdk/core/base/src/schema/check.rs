@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use jsonschema::{Retrieve, Uri, Validator};
+use jsonschema::{Retrieve, Uri, ValidationError, Validator};
 use serde_json::Value;
 
 /// Largest number of violations that are reported. A hostile document could have millions of
@@ -19,14 +19,10 @@ const MOST: usize = 1000;
 /// let violations = schema.violations(&json!({ "threads": 0 }));
 /// assert_eq!(violations[0].pointer, "/threads");
 /// assert_eq!(violations[0].rule, "/properties/threads/minimum");
-/// # Ok::<(), htex_base::schema::SchemaError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Schema(Validator);
-
-/// Error: a schema cannot be compiled.
-#[derive(Debug)]
-pub struct SchemaError(String);
 
 /// A violation of a schema.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,9 +49,8 @@ impl Schema {
     ///
     /// # Errors
     /// If it is not a valid schema, or refers to another schema.
-    pub fn new(schema: &Value) -> Result<Self, SchemaError> {
-        let validator = jsonschema::options().with_retriever(Nothing).build(schema);
-        validator.map(Self).map_err(|e| SchemaError(e.to_string()))
+    pub fn new(schema: &Value) -> Result<Self, ValidationError<'static>> {
+        jsonschema::options().with_retriever(Nothing).build(schema).map(Self)
     }
 
     /// Returns the violations of a document, in the order of the schema: at most the first
@@ -72,11 +67,3 @@ impl Schema {
             .collect()
     }
 }
-
-impl std::fmt::Display for SchemaError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl Error for SchemaError {}

@@ -27,7 +27,7 @@ mod keys;
 
 pub use crate::white_space;
 #[cfg(feature = "check")]
-pub use check::{Schema, SchemaError, Violation};
+pub use check::{Schema, Violation};
 pub use keys::{UnknownKey, check_keys, unknown_keys};
 
 use schemars::transform::transform_subschemas;

@@ -3,24 +3,11 @@
 use std::sync::Arc;
 
 use super::imports::Guest;
-use super::sections::{SectionError, limited};
+use super::sections::{CompileError, limited};
 use super::shared::Shared;
 use crate::WasmLimits;
 use crate::clock::Instant;
-use crate::sandbox::{Budget, BudgetError, Sandbox};
-
-/// Error: a module cannot be compiled.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum CompileError {
-    #[error("the module is larger than the {bytes} bytes allowed")]
-    TooLarge { bytes: usize },
-    #[error(transparent)]
-    Sections(#[from] SectionError),
-    #[error(transparent)]
-    Budget(#[from] BudgetError),
-    #[error("invalid module: {what}")]
-    Invalid { what: String },
-}
+use crate::sandbox::{Budget, Sandbox};
 
 /// A compiled module, and the data that its instances share.
 pub(super) struct WasmModule {
@@ -34,9 +21,6 @@ impl WasmModule {
     /// Checks and compiles a module.
     pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, CompileError> {
         let limits = &sandbox.limits;
-        if bytes.len() > limits.module_bytes {
-            return Err(CompileError::TooLarge { bytes: limits.module_bytes });
-        }
         let bytes = limited(bytes, limits)?;
         sandbox.budget.time_left()?;
         let start = Instant::now();

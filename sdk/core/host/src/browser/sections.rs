@@ -2,6 +2,7 @@
 //! that the module itself states.
 
 use crate::WasmLimits;
+use crate::sandbox::BudgetError;
 
 /// Size of a page of memory, bytes.
 const PAGE: usize = 1 << 16;
@@ -12,13 +13,16 @@ const MEMORY: u8 = 5;
 /// Flag of a memory or table: its limits include a maximum.
 const HAS_MAXIMUM: u8 = 1;
 
-/// Error: a module states a higher limit than the host allows, or its sections cannot be read.
+/// Error: a module cannot be compiled.
+// Here and not beside the compilation, because the tests of this file also run outside a browser.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub(super) enum SectionError {
-    #[error("invalid module: its section {id} cannot be read")]
-    Invalid { id: u8 },
-    #[error("invalid module: it does not begin with the bytes of WASM, version 1")]
-    Header,
+pub(super) enum CompileError {
+    #[error("the module is larger than the {bytes} bytes allowed")]
+    TooLarge { bytes: usize },
+    #[error(transparent)]
+    Budget(#[from] BudgetError),
+    #[error("invalid module: {what}")]
+    Invalid { what: String },
     #[error(
         "the module has imports; a model may import nothing (build it for wasm32-unknown-unknown, without files, clocks and \
          randomness)"
@@ -33,18 +37,23 @@ pub(super) enum SectionError {
 }
 
 /// Returns the module with its memory and tables limited to `limits`.
-pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
-    let mut rest = module.strip_prefix(b"\0asm\x01\0\0\0").ok_or(SectionError::Header)?;
+pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, CompileError> {
+    if module.len() > limits.module_bytes {
+        return Err(CompileError::TooLarge { bytes: limits.module_bytes });
+    }
+    let mut rest = module.strip_prefix(b"\0asm\x01\0\0\0").ok_or_else(|| {
+        let what = "it does not begin with the bytes of WASM, version 1".to_owned();
+        CompileError::Invalid { what }
+    })?;
     let mut out = module[..8].to_vec();
     while let Some((&id, behind)) = rest.split_first() {
-        let invalid = SectionError::Invalid { id };
         rest = behind;
-        let len = number(&mut rest).ok_or(invalid.clone())?;
-        let (body, behind) = rest.split_at_checked(len as usize).ok_or(invalid.clone())?;
+        let len = number(&mut rest).ok_or_else(|| unreadable(id))?;
+        let (body, behind) = rest.split_at_checked(len as usize).ok_or_else(|| unreadable(id))?;
         rest = behind;
         match id {
             // Imports are refused, so all memories and tables are in the two sections below.
-            IMPORT if body != [0] => return Err(SectionError::Import),
+            IMPORT if body != [0] => return Err(CompileError::Import),
             MEMORY | TABLE => {
                 let body = within(id, body, limits)?;
                 out.push(id);
@@ -62,21 +71,20 @@ pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Sec
 }
 
 /// Returns the memories or tables of a section with maxima added.
-fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
-    let invalid = SectionError::Invalid { id };
+fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, CompileError> {
     let (most, above) = match id {
         MEMORY => {
             let bytes = limits.memory_bytes;
-            (bytes / PAGE, SectionError::Memory { bytes })
+            (bytes / PAGE, CompileError::Memory { bytes })
         }
         _ => {
             let elements = limits.table_elements;
-            (elements, SectionError::Table { elements })
+            (elements, CompileError::Table { elements })
         }
     };
-    let count = number(&mut body).ok_or(invalid.clone())?;
+    let count = number(&mut body).ok_or_else(|| unreadable(id))?;
     if id == MEMORY && count > 1 {
-        return Err(SectionError::Kind);
+        return Err(CompileError::Kind);
     }
     let mut out = Vec::new();
     push(&mut out, count);
@@ -84,20 +92,20 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Secti
         if id == TABLE {
             // A reference type of one byte. The encodings of other types begin with a byte that is
             // no such type.
-            let kind = byte(&mut body).ok_or(invalid.clone())?;
+            let kind = byte(&mut body).ok_or_else(|| unreadable(id))?;
             if !matches!(kind, 0x70 | 0x6f) {
-                return Err(SectionError::Kind);
+                return Err(CompileError::Kind);
             }
             out.push(kind);
         }
-        let flags = byte(&mut body).ok_or(invalid.clone())?;
+        let flags = byte(&mut body).ok_or_else(|| unreadable(id))?;
         // Further flags mean shared or 64-bit memories.
         if flags > HAS_MAXIMUM {
-            return Err(SectionError::Kind);
+            return Err(CompileError::Kind);
         }
-        let least = number(&mut body).ok_or(invalid.clone())?;
+        let least = number(&mut body).ok_or_else(|| unreadable(id))?;
         let stated = match flags {
-            HAS_MAXIMUM => number(&mut body).ok_or(invalid.clone())?,
+            HAS_MAXIMUM => number(&mut body).ok_or_else(|| unreadable(id))?,
             _ => u32::MAX,
         };
         if least as usize > most {
@@ -107,7 +115,11 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Secti
         push(&mut out, least);
         push(&mut out, stated.min(u32::try_from(most).unwrap_or(u32::MAX)));
     }
-    if body.is_empty() { Ok(out) } else { Err(invalid) }
+    if body.is_empty() { Ok(out) } else { Err(unreadable(id)) }
+}
+
+fn unreadable(id: u8) -> CompileError {
+    CompileError::Invalid { what: format!("its section {id} cannot be read") }
 }
 
 fn byte(rest: &mut &[u8]) -> Option<u8> {
@@ -191,8 +203,10 @@ mod tests {
             let error = limited(&wat::parse_str(text).unwrap(), &limits).unwrap_err();
             assert!(error.to_string().contains(words), "{text}: {error}");
         }
-        assert_eq!(limited(b"PK", &limits), Err(SectionError::Header));
+        let invalid = |what: &str| Err(CompileError::Invalid { what: what.to_owned() });
+        let expected = invalid("it does not begin with the bytes of WASM, version 1");
+        assert_eq!(limited(b"PK", &limits), expected);
         let cut = b"\0asm\x01\0\0\0\x05\x04\x01\x00";
-        assert_eq!(limited(cut, &limits), Err(SectionError::Invalid { id: 5 }));
+        assert_eq!(limited(cut, &limits), invalid("its section 5 cannot be read"));
     }
 }

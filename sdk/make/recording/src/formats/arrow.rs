@@ -5,13 +5,15 @@
 //! metadata are verified flatbuffers of the crate `arrow-ipc`. That crate's own reader is not used,
 //! because it trusts the sizes stated in a file.
 
-use std::io::{self, Read};
+use std::fmt::Display;
+use std::io::Read;
 
 use arrow_ipc::{CompressionType, RecordBatch, root_as_footer, root_as_message};
 use lz4_flex::frame::FrameDecoder;
 
 use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::arrow_schema::{Column, Schema};
+use crate::formats::damage;
 use crate::formats::shared::SharedInput;
 use crate::input::InputFile;
 use crate::sheet::{Columns, Numbers, Sheet};
@@ -22,24 +24,8 @@ const MOST_METADATA: u64 = 16 << 20;
 /// The first bytes of a file, then the first bytes of a message.
 const FILE: &[u8] = b"ARROW1";
 const MESSAGE: [u8; 4] = [0xff; 4];
-
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ArrowError {
-    #[error("the file ends or cannot be read here: {0}; copy it again")]
-    Io(#[from] io::Error),
-    #[error("not readable Arrow metadata: {0}; copy the file again, or write it again")]
-    Metadata(String),
-    #[error("{0}")]
-    Layout(&'static str),
-    #[error("this is Feather of version 1; write it as version 2 (in pyarrow: version=2)")]
-    FeatherV1,
-    #[error(
-        "it is compressed by {0}, which is not read; write it with lz4 (in pyarrow: compression='lz4')"
-    )]
-    Compression(String),
-    #[error("its type is {0}, which is not read as numbers; write it as float64")]
-    Type(String),
-}
+const FEATHER_V1: &str =
+    "this is Feather of version 1; write it as version 2 (in pyarrow: version=2)";
 
 /// An opened file.
 pub(crate) struct Arrow {
@@ -79,7 +65,7 @@ impl Arrow {
             source,
         };
         let read = match is_file {
-            _ if is_old => Err((0, ArrowError::FeatherV1)),
+            _ if is_old => Err((0, ReadProblem::invalid(FEATHER_V1))),
             true => arrow.read_footer(),
             false => arrow.read_stream(),
         };
@@ -89,23 +75,22 @@ impl Arrow {
     }
 
     /// Reads a file's footer, which lists its batches.
-    fn read_footer(&mut self) -> Result<(), (u64, ArrowError)> {
+    fn read_footer(&mut self) -> Result<(), (u64, ReadProblem)> {
         let length = self.source.length();
         let tail_at = length.saturating_sub(10);
         let tail = self.source.read(tail_at, 10).map_err(|error| (tail_at, error.into()))?;
         if tail[4..] != *FILE {
             let problem = "the file does not end with ARROW1; it seems truncated, copy it again";
-            return Err((tail_at, ArrowError::Layout(problem)));
+            return Err((tail_at, ReadProblem::invalid(problem)));
         }
         let size = u64::from(u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]));
         let at = tail_at.saturating_sub(size);
         let read = || {
             let bytes = metadata(&self.source, at, size)?;
-            let footer =
-                root_as_footer(&bytes).map_err(|error| ArrowError::Metadata(error.to_string()))?;
-            let schema = footer
-                .schema()
-                .ok_or(ArrowError::Layout("the footer has no schema; write the file again"))?;
+            let footer = root_as_footer(&bytes).map_err(bad_metadata)?;
+            let schema = footer.schema().ok_or_else(|| {
+                ReadProblem::invalid("the footer has no schema; write the file again")
+            })?;
             let blocks: Vec<[i64; 3]> = footer
                 .recordBatches()
                 .into_iter()
@@ -131,7 +116,7 @@ impl Arrow {
     }
 
     /// Reads the messages of a stream one after the other.
-    fn read_stream(&mut self) -> Result<(), (u64, ArrowError)> {
+    fn read_stream(&mut self) -> Result<(), (u64, ReadProblem)> {
         let mut at = 0;
         let mut is_first = true;
         while at + 8 <= self.source.length() {
@@ -147,10 +132,10 @@ impl Arrow {
 
     /// Reads the message at `at` and returns the place of the next message; `None` at the end of
     /// the stream.
-    fn read_message(&mut self, at: u64, is_first: bool) -> Result<Option<u64>, ArrowError> {
+    fn read_message(&mut self, at: u64, is_first: bool) -> Result<Option<u64>, ReadProblem> {
         let prefix = self.source.read(at, 8)?;
         if prefix[..4] != MESSAGE {
-            return Err(ArrowError::Layout(
+            return Err(ReadProblem::invalid(
                 "no message begins here; the stream is damaged, write it again",
             ));
         }
@@ -159,14 +144,13 @@ impl Arrow {
             return Ok(None);
         }
         let bytes = metadata(&self.source, at + 8, size)?;
-        let message =
-            root_as_message(&bytes).map_err(|error| ArrowError::Metadata(error.to_string()))?;
+        let message = root_as_message(&bytes).map_err(bad_metadata)?;
         let body_bytes = u64::try_from(message.bodyLength()).unwrap_or(u64::MAX);
         let body = at + 8 + size;
         match (is_first, message.header_as_schema()) {
             (true, Some(schema)) => self.schema = Schema::from_ipc(&schema),
             (true, None) => {
-                return Err(ArrowError::Layout(
+                return Err(ReadProblem::invalid(
                     "the stream does not begin with a schema; write it again",
                 ));
             }
@@ -179,14 +163,14 @@ impl Arrow {
         if body_bytes <= left {
             Ok(Some(body + body_bytes))
         } else {
-            Err(ArrowError::Layout("the stream ends inside this message; copy it again"))
+            Err(ReadProblem::invalid("the stream ends inside this message; copy it again"))
         }
     }
 
-    fn add_batch(&mut self, message: Message) -> Result<(), ArrowError> {
+    fn add_batch(&mut self, message: Message) -> Result<(), ReadProblem> {
         let rows = self.with_batch(message, |batch| Ok(batch.length()))?;
         let rows = u64::try_from(rows).map_err(|_| {
-            ArrowError::Layout("a batch has a negative length; write the file again")
+            ReadProblem::invalid("a batch has a negative length; write the file again")
         })?;
         self.batches.push(Batch { message, rows });
         Ok(())
@@ -196,16 +180,17 @@ impl Arrow {
     fn with_batch<T>(
         &self,
         message: Message,
-        read: impl FnOnce(&RecordBatch<'_>) -> Result<T, ArrowError>,
-    ) -> Result<T, ArrowError> {
+        read: impl FnOnce(&RecordBatch<'_>) -> Result<T, ReadProblem>,
+    ) -> Result<T, ReadProblem> {
         let bytes = metadata(&self.source, message.metadata, message.metadata_bytes)?;
         // Files from before version 0.15 have no marker before the length.
         let start = if bytes.starts_with(&MESSAGE) { 8 } else { 4 };
-        let root = root_as_message(bytes.get(start..).unwrap_or_default())
-            .map_err(|error| ArrowError::Metadata(error.to_string()))?;
+        let root = root_as_message(bytes.get(start..).unwrap_or_default()).map_err(bad_metadata)?;
         match root.header_as_record_batch() {
             Some(batch) => read(&batch),
-            None => Err(ArrowError::Layout("a block is not a batch of rows; write the file again")),
+            None => {
+                Err(ReadProblem::invalid("a block is not a batch of rows; write the file again"))
+            }
         }
     }
 
@@ -215,12 +200,18 @@ impl Arrow {
         batch: Batch,
         column: &Column,
         values: &mut Vec<f64>,
-    ) -> Result<(), ArrowError> {
+    ) -> Result<(), ReadProblem> {
         let Some(kind) = column.number else {
-            return Err(ArrowError::Type(column.kind.clone()));
+            return Err(ReadProblem::Invalid(format!(
+                "its type is {}, which is not read as numbers; write it as float64",
+                column.kind
+            )));
         };
-        let missing =
-            ArrowError::Layout("the batch has fewer buffers than its schema; write the file again");
+        let missing = || {
+            ReadProblem::invalid(
+                "the batch has fewer buffers than its schema; write the file again",
+            )
+        };
         let size = kind.size() as u64;
         // Buffers are padded, so a buffer may be longer than its values.
         let wanted = batch.rows.saturating_mul(size);
@@ -235,7 +226,7 @@ impl Arrow {
             let (Some(nulls), Some(bits), Some(numbers)) =
                 (nulls, buffer(column.buffer), buffer(column.buffer + 1))
             else {
-                return Err(missing);
+                return Err(missing());
             };
             // The bits may be left out if no value is missing, so they are read only if one is.
             let validity = match nulls {
@@ -262,9 +253,9 @@ impl Arrow {
         (offset, length): (i64, i64),
         codec: Option<CompressionType>,
         wanted: u64,
-    ) -> Result<Vec<u8>, ArrowError> {
+    ) -> Result<Vec<u8>, ReadProblem> {
         let outside = || {
-            ArrowError::Layout("a buffer is outside its batch or too short; copy the file again")
+            ReadProblem::invalid("a buffer is outside its batch or too short; copy the file again")
         };
         let offset = u64::try_from(offset).map_err(|_| outside())?;
         let length = u64::try_from(length).map_err(|_| outside())?;
@@ -280,7 +271,9 @@ impl Arrow {
             };
         };
         if codec != CompressionType::LZ4_FRAME {
-            return Err(ArrowError::Compression(format!("{codec:?}")));
+            return Err(ReadProblem::Invalid(format!(
+                "it is compressed by {codec:?}, which is not read; write it with lz4 (in pyarrow: compression='lz4')"
+            )));
         }
         if length == 0 && wanted == 0 {
             return Ok(Vec::new());
@@ -320,17 +313,22 @@ impl Sheet for Arrow {
 }
 
 /// Reads metadata, up to the largest allowed size.
-fn metadata(source: &SharedInput, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
+fn metadata(source: &SharedInput, at: u64, bytes: u64) -> Result<Vec<u8>, ReadProblem> {
     if bytes <= MOST_METADATA {
         Ok(source.read(at, bytes)?)
     } else {
-        Err(ArrowError::Layout(
+        Err(ReadProblem::invalid(
             "the metadata are longer than any that are read; copy the file again",
         ))
     }
 }
 
-fn damaged(place: impl Into<Place>, problem: &ArrowError) -> Fault {
-    ReadProblem::Invalid(htex_base::finding::plain(&problem.to_string()).into_owned())
-        .at_place(place)
+fn bad_metadata(error: impl Display) -> ReadProblem {
+    ReadProblem::Invalid(format!(
+        "not readable Arrow metadata: {error}; copy the file again, or write it again"
+    ))
+}
+
+fn damaged(place: impl Into<Place>, problem: &ReadProblem) -> Fault {
+    ReadProblem::Invalid(htex_base::finding::plain(&damage(problem)).into_owned()).at_place(place)
 }

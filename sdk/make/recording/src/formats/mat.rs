@@ -8,6 +8,7 @@
 //! This reader is written for this project, because the crate `matfile` does not read structs and
 //! reads a whole file into memory.
 
+use std::fmt::Display;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 use flate2::read::ZlibDecoder;
@@ -15,7 +16,7 @@ use flate2::read::ZlibDecoder;
 use crate::error::{Fault, ReadProblem};
 use crate::formats::bytes::{ByteReader, Endian, NumberType};
 use crate::formats::mat_element::{
-    COMPRESSED, INT32, MATRIX, MOST_BYTES, MOST_DEEP, MOST_NAME, MOST_NAMES, MatError, Tag, UINT32,
+    COMPRESSED, INT32, MATRIX, MOST_BYTES, MOST_DEEP, MOST_NAME, MOST_NAMES, Tag, UINT32,
     number_type, text, unexpected, up_to_nul, words,
 };
 use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape};
@@ -77,7 +78,7 @@ impl Mat {
         Ok(mat)
     }
 
-    fn scan(&mut self, scan: &mut Scan) -> Result<(), MatError> {
+    fn scan(&mut self, scan: &mut Scan) -> Result<(), ReadProblem> {
         let (length, endian) = (self.input.len()?, self.endian);
         while scan.element.at + 8 <= length {
             self.input.seek(SeekFrom::Start(scan.element.at))?;
@@ -87,7 +88,7 @@ impl Mat {
                 Element { at: scan.element.at + 8, bytes, is_compressed: kind == COMPRESSED };
             if scan.element.at + bytes > length {
                 let left = length - scan.element.at;
-                return Err(MatError::Size(format!("{bytes} bytes where {left} are left")));
+                return Err(wrong_size(format_args!("{bytes} bytes where {left} are left")));
             }
             match kind {
                 COMPRESSED => {
@@ -158,7 +159,7 @@ struct Scan {
 }
 
 impl Scan {
-    fn expect_matrix(&self, tag: &Tag) -> Result<(), MatError> {
+    fn expect_matrix(&self, tag: &Tag) -> Result<(), ReadProblem> {
         match tag.kind {
             MATRIX => Ok(()),
             kind => Err(unexpected(kind, "a matrix")),
@@ -173,12 +174,14 @@ impl Scan {
         bytes: u64,
         field: Option<String>,
         depth: usize,
-    ) -> Result<(), MatError> {
+    ) -> Result<(), ReadProblem> {
         let end = inside.at + bytes;
         // A field is counted again inside its struct, so this is at most the depth times too much.
         self.scanned = self.scanned.saturating_add(bytes);
         if self.scanned > MOST_BYTES {
-            return Err(MatError::TooLarge);
+            return Err(ReadProblem::Invalid(format!(
+                "more than {MOST_BYTES} bytes when decompressed; save only the variables of the recording"
+            )));
         }
         // A struct's field without a value.
         if bytes == 0 {
@@ -197,7 +200,7 @@ impl Scan {
         }
         match end.checked_sub(inside.at) {
             Some(left) => Ok(inside.skip(left)?),
-            None => Err(MatError::Size(format!(
+            None => Err(wrong_size(format_args!(
                 "{} ends inside its values",
                 htex_base::finding::plain(&name)
             ))),
@@ -209,7 +212,7 @@ impl Scan {
         inside: &mut ByteReader<impl Read>,
         name: &str,
         sizes: &[u32],
-    ) -> Result<(), MatError> {
+    ) -> Result<(), ReadProblem> {
         let tag = Tag::read(inside)?;
         let Some(kind) = number_type(tag.kind) else {
             return Err(unexpected(tag.kind, "a type of numbers"));
@@ -219,7 +222,7 @@ impl Scan {
         };
         let (rows, columns) = (u64::from(rows), u64::from(columns));
         if rows.saturating_mul(columns).saturating_mul(size) != u64::from(tag.bytes) {
-            return Err(MatError::Size(format!(
+            return Err(wrong_size(format_args!(
                 "{} is {rows} by {columns} and has {} bytes of numbers",
                 htex_base::finding::plain(name),
                 tag.bytes
@@ -229,7 +232,7 @@ impl Scan {
         if let Some(shape) = Shape::of_array(columns, rows) {
             let data = Data { element: self.element, before: inside.at, kind };
             if !self.arrays.add(name, shape, data) {
-                return Err(MatError::TooMany);
+                return Err(too_many());
             }
         } else if rows * columns == 1 {
             let mut scalar = f64::NAN;
@@ -246,22 +249,24 @@ impl Scan {
         name: &str,
         sizes: &[u32],
         depth: usize,
-    ) -> Result<(), MatError> {
+    ) -> Result<(), ReadProblem> {
         if depth == MOST_DEEP {
-            return Err(MatError::TooDeep);
+            return Err(ReadProblem::Invalid(format!(
+                "structs are nested more than {MOST_DEEP} deep; save only the variables of the recording"
+            )));
         }
         let width = words(inside, INT32, 8, "the length of field names")?;
         let width = width.first().copied().unwrap_or(0) as usize;
         let names = text(inside, MOST_NAMES, "the field names")?;
         if width == 0 && !names.is_empty() {
-            return Err(MatError::Size("field names of length 0".to_owned()));
+            return Err(wrong_size("field names of length 0"));
         }
         let fields: Vec<String> = names.chunks(width.max(1)).map(up_to_nul).collect();
         let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
         let count = count
             // A struct array without fields holds nothing, however large it claims to be.
             .filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64)
-            .ok_or(MatError::TooMany)?;
+            .ok_or_else(too_many)?;
         if fields.is_empty() {
             return Ok(());
         }
@@ -272,7 +277,7 @@ impl Scan {
                     _ => format!("{name}({number}).{field}"),
                 };
                 if path.len() > MOST_NAME as usize {
-                    return Err(MatError::Size("a name of more than 1024 bytes".to_owned()));
+                    return Err(wrong_size("a name of more than 1024 bytes"));
                 }
                 let tag = Tag::read(inside)?;
                 self.expect_matrix(&tag)?;
@@ -283,10 +288,23 @@ impl Scan {
     }
 }
 
-fn damaged(at: u64, problem: &MatError) -> Fault {
+fn wrong_size(what: impl Display) -> ReadProblem {
+    ReadProblem::Invalid(format!("a size in the file is wrong ({what}); save it again"))
+}
+
+fn too_many() -> ReadProblem {
+    ReadProblem::Invalid(format!(
+        "more than {MOST_COLUMNS} variables; save only the variables of the recording"
+    ))
+}
+
+fn damaged(at: u64, problem: &ReadProblem) -> Fault {
     let problem = match problem {
-        MatError::Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
+        ReadProblem::Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
             "the variable that begins here ends too early; copy the file again".to_owned()
+        }
+        ReadProblem::Io(error) => {
+            format!("the file ends or cannot be decompressed here: {error}; copy it again")
         }
         other => other.to_string(),
     };

@@ -1,9 +1,9 @@
-//! The elements of a MATLAB version 5 file, and the errors of reading it.
+//! The elements of a MATLAB version 5 file.
 
 use std::io::{self, Read};
 
+use crate::error::ReadProblem;
 use crate::formats::bytes::{ByteReader, NumberType};
-use crate::formats::matrix::MOST_COLUMNS;
 
 /// Deepest allowed nesting of structs.
 pub(crate) const MOST_DEEP: usize = 16;
@@ -19,26 +19,6 @@ pub(crate) const INT32: u32 = 5;
 pub(crate) const UINT32: u32 = 6;
 pub(crate) const MATRIX: u32 = 14;
 pub(crate) const COMPRESSED: u32 = 15;
-
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum MatError {
-    #[error("the file ends or cannot be decompressed here: {0}; copy it again")]
-    Io(#[from] io::Error),
-    #[error("{found} is not {expected} of a MATLAB 5 file; save it again")]
-    Unexpected { found: String, expected: &'static str },
-    #[error("a size in the file is wrong ({0}); save it again")]
-    Size(String),
-    #[error("more than {MOST_COLUMNS} variables; save only the variables of the recording")]
-    TooMany,
-    #[error(
-        "more than {MOST_BYTES} bytes when decompressed; save only the variables of the recording"
-    )]
-    TooLarge,
-    #[error(
-        "structs are nested more than {MOST_DEEP} deep; save only the variables of the recording"
-    )]
-    TooDeep,
-}
 
 /// The tag of an element.
 pub(crate) struct Tag {
@@ -76,7 +56,7 @@ pub(crate) fn words(
     kind: u32,
     most: u32,
     expected: &'static str,
-) -> Result<Vec<u32>, MatError> {
+) -> Result<Vec<u32>, ReadProblem> {
     let tag = Tag::read(inside)?;
     if tag.kind != kind || tag.bytes > most || tag.bytes % 4 != 0 {
         return Err(unexpected(tag.kind, expected));
@@ -91,7 +71,7 @@ pub(crate) fn text(
     inside: &mut ByteReader<impl Read>,
     most: u32,
     expected: &'static str,
-) -> Result<Vec<u8>, MatError> {
+) -> Result<Vec<u8>, ReadProblem> {
     let tag = Tag::read(inside)?;
     if tag.kind != INT8 || tag.bytes > most {
         return Err(unexpected(tag.kind, expected));
@@ -122,6 +102,6 @@ pub(crate) fn number_type(kind: u32) -> Option<NumberType> {
     })
 }
 
-pub(crate) fn unexpected(kind: u32, expected: &'static str) -> MatError {
-    MatError::Unexpected { found: format!("type {kind}"), expected }
+pub(crate) fn unexpected(kind: u32, expected: &str) -> ReadProblem {
+    ReadProblem::Invalid(format!("type {kind} is not {expected} of a MATLAB 5 file; save it again"))
 }

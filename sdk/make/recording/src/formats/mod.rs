@@ -203,6 +203,18 @@ fn not_built(feature: &'static str) -> ReadProblem {
     ReadProblem::NotBuilt { formats, feature }
 }
 
+/// Returns the text of a problem in a file that states the sizes of its parts. An error of reading
+/// can also mean that the file ends too early.
+#[cfg(any(feature = "lab-files", feature = "tdms"))]
+fn damage(problem: &ReadProblem) -> String {
+    match problem {
+        ReadProblem::Io(error) => {
+            format!("the file ends or cannot be read here: {error}; copy it again")
+        }
+        other => other.to_string(),
+    }
+}
+
 fn check(sheet: &dyn Sheet, options: &ReadOptions) -> Result<(), Fault> {
     let refuse = |option, problem| Err(ReadProblem::Option { option, problem }.into());
     let own_hz = match sheet.layout() {

@@ -4,7 +4,7 @@ use std::io::{BufReader, ErrorKind, Read, copy, sink};
 
 use crate::error::{Fault, ReadProblem};
 use crate::formats::bytes::NumberType;
-use crate::formats::npy_header::{Header, NpyError};
+use crate::formats::npy_header::Header;
 use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::InputFile;
 use crate::value_limit::ValueLimit;
@@ -14,8 +14,8 @@ const MAX_CHANNELS: u64 = 256;
 
 /// Opens an NPY file. Its values are read one by one later.
 pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
-    let header = Header::parse(&opened.front).map_err(broken)?;
-    let (rows, width) = shape(&header.shape).map_err(broken)?;
+    let header = Header::parse(&opened.front)?;
+    let (rows, width) = shape(&header.shape)?;
     let mut bytes = BufReader::new(opened.stream());
     copy(&mut bytes.by_ref().take(header.bytes as u64), &mut sink())?;
     Ok(Samples {
@@ -26,17 +26,19 @@ pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'
         limit,
         order: if header.is_planar { Order::Planar(rows) } else { Order::Interleaved },
         samples: Box::new(
-            values(bytes, header, rows * width as u64).map(|value| value.map_err(broken)),
+            values(bytes, header, rows * width as u64).map(|value| value.map_err(Fault::from)),
         ),
     })
 }
 
 /// Returns the number of rows and columns of an array.
-fn shape(shape: &[u64]) -> Result<(u64, usize), NpyError> {
+fn shape(shape: &[u64]) -> Result<(u64, usize), ReadProblem> {
     match shape {
         [rows] => Ok((*rows, 1)),
         [rows, columns @ 1..=MAX_CHANNELS] => Ok((*rows, *columns as usize)),
-        _ => Err(NpyError::Shape(shape.to_vec())),
+        _ => Err(ReadProblem::Invalid(format!(
+            "the array's shape is {shape:?}; expected (n,) or (n, channels), one row per sample"
+        ))),
     }
 }
 
@@ -46,7 +48,7 @@ fn values(
     mut bytes: impl Read,
     header: Header,
     items: u64,
-) -> impl Iterator<Item = Result<f64, NpyError>> {
+) -> impl Iterator<Item = Result<f64, ReadProblem>> {
     let (kind, endian) = (header.kind, header.endian);
     let full_scale = full_scale(kind).unwrap_or(1.0);
     let mut buffer = [0; 8];
@@ -54,8 +56,12 @@ fn values(
         let value = &mut buffer[..kind.size()];
         match bytes.read_exact(value) {
             Ok(()) => Ok(kind.value(value, endian) / full_scale),
-            Err(error) if error.kind() != ErrorKind::UnexpectedEof => Err(error.into()),
-            Err(_) => Err(NpyError::End { read, items }),
+            Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
+                Err(ReadProblem::invalid(error))
+            }
+            Err(_) => Err(ReadProblem::Invalid(format!(
+                "the file ends after {read} of {items} values; copy it again"
+            ))),
         }
     })
 }
@@ -67,8 +73,4 @@ fn full_scale(kind: NumberType) -> Option<f64> {
         NumberType::I32 => Some(2_147_483_648.0),
         _ => None,
     }
-}
-
-fn broken(problem: NpyError) -> Fault {
-    ReadProblem::invalid(problem).into()
 }

@@ -12,8 +12,8 @@ use std::io::{Seek, SeekFrom};
 use crate::columns::clock::snap;
 use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::bytes::{ByteReader, Endian};
+use crate::formats::damage;
 use crate::formats::tdms_directory::{Channel, Directory, Piece};
-use crate::formats::tdms_object::TdmsError;
 use crate::input::{InputFile, Random};
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
@@ -48,9 +48,9 @@ impl Tdms {
         })
     }
 
-    fn read(&mut self, channel: &Channel) -> Result<Vec<f64>, TdmsError> {
+    fn read(&mut self, channel: &Channel) -> Result<Vec<f64>, ReadProblem> {
         if let Some(problem) = &channel.refused {
-            return Err(TdmsError::Refused(problem));
+            return Err(ReadProblem::invalid(problem));
         }
         let mut values = Vec::new();
         for piece in &channel.pieces {
@@ -64,7 +64,7 @@ impl Tdms {
 }
 
 /// Reads a channel's values in one chunk; the input must be at the first value.
-fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Result<(), TdmsError> {
+fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Result<(), ReadProblem> {
     let size = piece.kind.size() as u64;
     if piece.stride == size {
         let mut reader = ByteReader::new(input, piece.endian);
@@ -138,6 +138,6 @@ impl Sheet for Tdms {
     }
 }
 
-fn damaged(place: impl Into<Place>, problem: &TdmsError) -> Fault {
-    ReadProblem::invalid(problem).at_place(place)
+fn damaged(place: impl Into<Place>, problem: &ReadProblem) -> Fault {
+    ReadProblem::Invalid(damage(problem)).at_place(place)
 }

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::io::{BufReader, Read, Seek};
 
+use crate::error::ReadProblem;
 use crate::formats::bytes::{ByteReader, Endian, NumberType};
 use crate::formats::tdms_object::{
-    Layout, MOST_CHANNELS, TdmsError, attribute, daqmx_index, layout, parts, text,
+    Layout, MOST_CHANNELS, attribute, daqmx_index, layout, parts, text,
 };
 use crate::input::Random;
 use crate::value_limit::ValueLimit;
@@ -104,7 +105,7 @@ impl Directory {
     }
 
     /// Reads all segments.
-    pub(crate) fn read(&mut self, input: &mut Random) -> Result<(), TdmsError> {
+    pub(crate) fn read(&mut self, input: &mut Random) -> Result<(), ReadProblem> {
         let length = input.len()?;
         let mut input = BufReader::new(input);
         while self.segment < length {
@@ -133,11 +134,19 @@ impl Directory {
         &self,
         reader: &mut ByteReader<impl Read>,
         length: u64,
-    ) -> Result<Segment, TdmsError> {
+    ) -> Result<Segment, ReadProblem> {
         match &reader.array()? {
             b"TDSm" => {}
-            b"TDSh" => return Err(TdmsError::Index),
-            other => return Err(TdmsError::Signature(*other)),
+            b"TDSh" => {
+                return Err(ReadProblem::invalid(
+                    "this is only an index (TDSh); give the .tdms file beside it",
+                ));
+            }
+            other => {
+                return Err(ReadProblem::Invalid(format!(
+                    "a segment begins with {other:02x?} instead of TDSm; the file is damaged, copy it again"
+                )));
+            }
         }
         let contents = reader.u32()?;
         if contents & BIG_ENDIAN != 0 {
@@ -150,7 +159,10 @@ impl Directory {
         let is_complete = size != INCOMPLETE;
         let size = if is_complete { size } else { left };
         if size > left || metadata > size {
-            return Err(TdmsError::Short { wanted: size.max(metadata), left });
+            return Err(ReadProblem::Invalid(format!(
+                "a segment of {} bytes begins where {left} are left; the file seems truncated, copy it again",
+                size.max(metadata)
+            )));
         }
         Ok(Segment {
             contents,
@@ -162,7 +174,7 @@ impl Directory {
     }
 
     /// Reads the objects that a segment adds or changes.
-    fn objects(&mut self, reader: &mut ByteReader<impl Read>) -> Result<(), TdmsError> {
+    fn objects(&mut self, reader: &mut ByteReader<impl Read>) -> Result<(), ReadProblem> {
         for _ in 0..reader.u32()? {
             let path = text(reader)?;
             let channel = self.channel(&path)?;
@@ -193,17 +205,24 @@ impl Directory {
     }
 
     /// Returns the channel with a path; `None` for the file itself and for groups.
-    fn channel(&mut self, path: &str) -> Result<Option<usize>, TdmsError> {
+    fn channel(&mut self, path: &str) -> Result<Option<usize>, ReadProblem> {
         if let Some(channel) = self.by_path.get(path) {
             return Ok(Some(*channel));
         }
-        let bad = || TdmsError::Path(htex_base::finding::plain(path).into_owned());
+        let bad = || {
+            ReadProblem::Invalid(format!(
+                "the object {} is neither the file, a group nor a channel; the file is damaged, copy it again",
+                htex_base::finding::plain(path)
+            ))
+        };
         let parts = parts(path).ok_or_else(bad)?;
         let [group, own] = &parts[..] else {
             return if parts.len() < 2 { Ok(None) } else { Err(bad()) };
         };
         if self.channels.len() == MOST_CHANNELS {
-            return Err(TdmsError::TooManyChannels);
+            return Err(ReadProblem::Invalid(format!(
+                "more than {MOST_CHANNELS} channels; export only the channels of the recording"
+            )));
         }
         let index = self.channels.len();
         self.channels.push(Channel {
@@ -249,7 +268,7 @@ impl Directory {
         &mut self,
         reader: &mut ByteReader<impl Read>,
         channel: Option<usize>,
-    ) -> Result<(), TdmsError> {
+    ) -> Result<(), ReadProblem> {
         for _ in 0..reader.u32()? {
             let name = text(reader)?;
             let value = attribute(reader)?;
@@ -270,7 +289,7 @@ impl Directory {
     }
 
     /// Adds the pieces of a segment to its channels.
-    fn raw_data(&mut self, segment: &Segment) -> Result<(), TdmsError> {
+    fn raw_data(&mut self, segment: &Segment) -> Result<(), ReadProblem> {
         if segment.contents & DAQMX != 0 {
             for channel in self.current.clone() {
                 self.refuse(channel, RAW_DAQMX);
@@ -291,14 +310,14 @@ impl Directory {
         let chunk_bytes =
             layouts.iter().fold(0_u64, |sum, (_, layout)| sum.saturating_add(layout.bytes));
         if chunk_bytes == 0 {
-            return Err(TdmsError::Layout(
+            return Err(ReadProblem::invalid(
                 "the segment has values, but no channel has any; the file is damaged, copy it again",
             ));
         }
         let chunks = bytes / chunk_bytes;
         if !bytes.is_multiple_of(chunk_bytes) {
             if segment.is_complete {
-                return Err(TdmsError::Layout(
+                return Err(ReadProblem::invalid(
                     "the segment ends inside its values; the file is damaged, copy it again",
                 ));
             }
@@ -312,7 +331,7 @@ impl Directory {
         if is_interleaved
             && layouts.iter().any(|(_, layout)| layout.values != rows || layout.kind.is_none())
         {
-            return Err(TdmsError::Layout(
+            return Err(ReadProblem::invalid(
                 "interleaved channels have different lengths; the file is damaged, copy it again",
             ));
         }
@@ -342,14 +361,21 @@ impl Directory {
         Ok(())
     }
 
-    fn add_piece(&mut self, channel: usize, layout: Layout, piece: Piece) -> Result<(), TdmsError> {
+    fn add_piece(
+        &mut self,
+        channel: usize,
+        layout: Layout,
+        piece: Piece,
+    ) -> Result<(), ReadProblem> {
         if layout.kind.is_none() || piece.values == 0 || piece.chunks == 0 {
             return Ok(());
         }
         // A piece takes as much memory as eight numbers.
         self.pieces += 8;
         if self.pieces > self.limit.most_values as u64 {
-            return Err(TdmsError::TooManyPieces);
+            return Err(ReadProblem::invalid(
+                "its pieces are more than the limit of numbers; export the recording again as one piece (defragmented)",
+            ));
         }
         let own = &mut self.channels[channel];
         own.samples = own.samples.saturating_add(piece.values.saturating_mul(piece.chunks));

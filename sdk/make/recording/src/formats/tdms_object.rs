@@ -1,45 +1,13 @@
-//! The parts of a TDMS object: its path, the layout of its values and its attributes; and the
-//! errors of a file.
+//! The parts of a TDMS object: its path, the layout of its values and its attributes.
 
-use std::io::{self, Read};
+use std::io::Read;
 
+use crate::error::ReadProblem;
 use crate::formats::bytes::{ByteReader, NumberType};
 
 /// Longest text that is read, bytes.
 const MOST_TEXT: u32 = 64 << 10;
 pub(crate) const MOST_CHANNELS: usize = 65_536;
-
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum TdmsError {
-    #[error("the file ends or cannot be read here: {0}; copy it again")]
-    Io(#[from] io::Error),
-    #[error("a segment begins with {0:02x?} instead of TDSm; the file is damaged, copy it again")]
-    Signature([u8; 4]),
-    #[error("this is only an index (TDSh); give the .tdms file beside it")]
-    Index,
-    #[error(
-        "a segment of {wanted} bytes begins where {left} are left; the file seems truncated, copy it again"
-    )]
-    Short { wanted: u64, left: u64 },
-    #[error("a text of {0} bytes; the file is damaged, copy it again")]
-    LongText(u32),
-    #[error(
-        "the object {0} is neither the file, a group nor a channel; the file is damaged, copy it again"
-    )]
-    Path(String),
-    #[error("more than {MOST_CHANNELS} channels; export only the channels of the recording")]
-    TooManyChannels,
-    #[error(
-        "its pieces are more than the limit of numbers; export the recording again as one piece (defragmented)"
-    )]
-    TooManyPieces,
-    #[error("{0}")]
-    Layout(&'static str),
-    #[error("an attribute has the unknown type {0:#x}; export the file again")]
-    Attribute(u32),
-    #[error("{0}")]
-    Refused(&'static str),
-}
 
 /// A channel's values in a chunk.
 #[derive(Debug, Clone, Copy)]
@@ -51,10 +19,10 @@ pub(crate) struct Layout {
 }
 
 /// Reads the type and number of a channel's values in a chunk.
-pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsError> {
+pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, ReadProblem> {
     let (kind, dimension, values) = (reader.u32()?, reader.u32()?, reader.u64()?);
     if dimension != 1 {
-        return Err(TdmsError::Layout(
+        return Err(ReadProblem::invalid(
             "a channel has more than one dimension; the file is damaged, copy it again",
         ));
     }
@@ -70,19 +38,19 @@ pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsE
         (None, 0x0008_000c) => 8,
         (None, 0x44 | 0x0010_000d) => 16,
         _ => {
-            return Err(TdmsError::Layout(
+            return Err(ReadProblem::invalid(
                 "a channel has extended or fixed-point numbers; save it as DBL",
             ));
         }
     };
-    let bytes = values.checked_mul(size).ok_or(TdmsError::Layout(
-        "a channel has too many values; the file is damaged, copy it again",
-    ))?;
+    let bytes = values.checked_mul(size).ok_or_else(|| {
+        ReadProblem::invalid("a channel has too many values; the file is damaged, copy it again")
+    })?;
     Ok(Layout { kind: number, values, bytes })
 }
 
 /// Skips the index of raw DAQmx data.
-pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), TdmsError> {
+pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), ReadProblem> {
     reader.skip(16)?;
     let scalers = reader.u32()?;
     reader.skip(20 * u64::from(scalers))?;
@@ -91,7 +59,7 @@ pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), Tdms
 }
 
 /// Reads an attribute's value; `None` if it is not a number.
-pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64>, TdmsError> {
+pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64>, ReadProblem> {
     let kind = reader.u32()?;
     if let Some(number) = number_type(kind) {
         let mut value = f64::NAN;
@@ -106,7 +74,11 @@ pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64
         0x0008_000c => reader.skip(8)?,
         // A time, and a complex number of two 64-bit floats.
         0x44 | 0x0010_000d => reader.skip(16)?,
-        other => return Err(TdmsError::Attribute(other)),
+        other => {
+            return Err(ReadProblem::Invalid(format!(
+                "an attribute has the unknown type {other:#x}; export the file again"
+            )));
+        }
     }
     Ok(None)
 }
@@ -127,10 +99,12 @@ fn number_type(kind: u32) -> Option<NumberType> {
     })
 }
 
-pub(crate) fn text(reader: &mut ByteReader<impl Read>) -> Result<String, TdmsError> {
+pub(crate) fn text(reader: &mut ByteReader<impl Read>) -> Result<String, ReadProblem> {
     let length = reader.u32()?;
     if length > MOST_TEXT {
-        return Err(TdmsError::LongText(length));
+        return Err(ReadProblem::Invalid(format!(
+            "a text of {length} bytes; the file is damaged, copy it again"
+        )));
     }
     let bytes = reader.vec(length.into())?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())

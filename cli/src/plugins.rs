@@ -26,8 +26,8 @@ pub(crate) struct PluginArgs {
     /// (of one instance) [64], stack-kib [256], call-ms (longest call) [5000], render-ms (for 8192
     /// samples, or for one retune) [500], voices [256], table-elements [10000], module-mib [16],
     /// fuel (instructions in one call) [not counted], compile-ms [5000], compile-mib [512]. For all
-    /// models of one asset together: asset-ms (without voices) [10000], asset-mib [512],
-    /// asset-instances [512]. For all models in one command together: all-ms (without voices)
+    /// models of one asset together: asset-ms (time of all calls except those of
+    /// voices) [10000], asset-mib [512], asset-instances [512]. For all models in one command together: all-ms (as asset-ms)
     /// [30000], all-mib [1024], all-instances [2048]
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,

@@ -19,8 +19,8 @@ use crate::plugins::PluginArgs;
 /// Read another haptic format as a texture
 ///
 /// A model file of the Penn Haptic Texture Toolkit states its units, speeds and forces, so it
-/// becomes a texture directly. From a glTF file, htex takes the texture that a material embeds, bit
-/// for bit. A file of any other format is a signal without this information. htex fits models to
+/// becomes a texture directly. From a glTF file, htex takes the `.htex` asset that a
+/// material embeds, unchanged. A file of any other format is a signal without this information. htex fits models to
 /// this signal as to a recording, so give the value of its full scale (--full-scale), and the speed
 /// and the force at which the file is felt (--speed, --force).
 ///

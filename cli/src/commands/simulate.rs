@@ -61,7 +61,7 @@ pub(crate) struct Simulate {
 
     /// How frequencies and level follow the motion, as exponents of power laws:
     /// frequency-speed=X,level-speed=X,level-force=X. The exponents change nothing at 80 mm/s and
-    /// 0.4 N. The default is a relief: 1, 0 and 1
+    /// 0.4 N. The default, 1, 0 and 1, is the law of a rigid relief
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 

@@ -13,22 +13,22 @@ pub(crate) struct Find {
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 
-    /// Parts of names or tags, case-insensitive
+    /// Only textures whose names or tags contain these words, case-insensitive
     words: Vec<String>,
 
-    /// A whole tag, case-insensitive; may be given several times
+    /// Only textures with this whole tag, case-insensitive; may be given several times
     #[arg(long)]
     tag: Vec<String>,
 
-    /// A speed within the range of speeds at which the texture was recorded, mm/s
+    /// Only textures whose recorded speeds include this one, mm/s
     #[arg(long, value_name = "MM_S", value_parser = not_negative)]
     speed: Option<f64>,
 
-    /// A normal force within the range of forces at which the texture was recorded, newtons
+    /// Only textures whose recorded normal forces include this one, newtons
     #[arg(long, value_name = "N", value_parser = not_negative)]
     force: Option<f64>,
 
-    /// A model that the texture has, by the model's id or the last part of the id
+    /// Only textures with this model (its id, or the last part of the id)
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 

@@ -45,7 +45,7 @@ pub(crate) struct Run {
     #[command(flatten)]
     asking: AskingArgs,
 
-    /// Let a simulated participant with this seed answer. Every file states that its answers are
+    /// Simulate the participant's answers, with this seed. Every file states that its answers are
     /// simulated
     #[arg(long, value_name = "SEED")]
     simulated: Option<u64>,

@@ -172,7 +172,7 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
-    /// Factor that multiplies all frequencies of a preview by ear.
+    /// Factor of all frequencies if the scene is played as sound. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,

@@ -67,7 +67,8 @@ pub(crate) struct Module {
 pub(crate) struct SpoolRange {
     /// Range of all bytes except the modules.
     pub own: Range<u64>,
-    /// For each module, the number of own bytes before it and its index.
+    /// A pair for each module: how many of the texture's own bytes come before the module, and the
+    /// module's index in the spool.
     pub modules: Box<[(u32, u32)]>,
 }
 

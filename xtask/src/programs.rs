@@ -46,12 +46,17 @@ fn check(command: &Command, status: ExitStatus) -> Result<()> {
 }
 
 /// Removes the variables that cargo sets for the package it runs. Otherwise build scripts that
-/// watch these variables (such as `ring`'s) would run again, and all crates that depend on them
-/// would be rebuilt.
-fn forget_package(command: &mut Command) {
+/// watch these variables (such as `ring`'s) would run again in a cargo that this program starts,
+/// and once more in the next cargo that the user starts. Both times, all crates that depend on them
+/// would be rebuilt, which are most of this workspace.
+pub fn forget_package(command: &mut Command) -> &mut Command {
     for (name, _) in std::env::vars_os() {
-        if name.to_string_lossy().starts_with("CARGO_PKG_") {
+        let is_of_package = ["CARGO_PKG_", "CARGO_MANIFEST_"]
+            .iter()
+            .any(|start| name.to_string_lossy().starts_with(start));
+        if is_of_package {
             command.env_remove(name);
         }
     }
+    command
 }

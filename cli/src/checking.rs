@@ -22,8 +22,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, default_value_t = 60.0, value_name = "S")]
     timeout: f64,
 
-    /// Run only the check NAME, and in this process instead of its own process, e.g. under a
-    /// debugger
+    /// Run only the check NAME, and do not start a separate process for it, so that a debugger can
+    /// follow it
     #[arg(long, value_name = "NAME", conflicts_with = "timeout")]
     pub(crate) reproduce: Option<String>,
 }

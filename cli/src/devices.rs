@@ -35,13 +35,13 @@ fn builtin() -> Vec<Arc<dyn Adapter>> {
 #[derive(Args, Default)]
 #[command(next_help_heading = "Devices")]
 pub(crate) struct DeviceArgs {
-    /// A device's native library (it runs with all your rights: load only what you trust); may be
-    /// given several times
+    /// Load this native library, which contains a device; may be given several times. A library
+    /// runs with all your rights, so load only a library that you trust
     #[arg(long, value_name = "FILE")]
     device_file: Vec<PathBuf>,
 
-    /// A folder of device libraries, which htex searches before HTEX_DEVICE_PATH and the user's own
-    /// folder
+    /// Search this folder for device libraries, before the folders in HTEX_DEVICE_PATH and the
+    /// user's own folder; may be given several times
     #[arg(long, value_name = "DIR")]
     device_dir: Vec<PathBuf>,
 }
@@ -118,7 +118,7 @@ pub(crate) struct OneDeviceArgs {
     #[arg(value_name = "FILE|ID")]
     pub(crate) device: String,
 
-    /// Use the input of this name, if an output has the same name
+    /// Use the input, if an input and an output have this name
     #[arg(long)]
     input: bool,
 
@@ -171,12 +171,13 @@ impl OneDeviceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// Name of a profile: a group of settings of the device (`htex device info` lists the profiles)
+    /// Use this profile of the device, which is a group of settings; `htex device info` lists the
+    /// profiles
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device, e.g. rate_hz=20000. It overrides the profile; may be given several
-    /// times
+    /// Change a setting of the device, e.g. rate_hz=20000; may be given several times. This
+    /// overrides the profile
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }

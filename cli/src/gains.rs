@@ -15,13 +15,13 @@ use crate::scenes::Ready;
 /// The representation and levels to use instead of the scene's.
 #[derive(Args)]
 pub(crate) struct FeltArgs {
-    /// The model that plays every surface, by short name or id
+    /// Play every surface with this model, by short name or id
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// `normalised`: a texture is equally strong with every model. `own`: each model keeps its own
-    /// energy, relative to the model with which the gain of --person was found, or else to the
-    /// strongest model
+    /// `normalised`: a texture is equally strong with every model. `own`: the models differ in
+    /// strength as their energies differ. The drive then applies to the model with which the gain
+    /// of --person was found, or without --person to the strongest model
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }

@@ -18,14 +18,14 @@ use crate::failure::{Failure, Result};
 #[command(next_help_heading = "Source")]
 pub(crate) struct InputArgs {
     /// What each channel measures, and its scale, written as for `htex fit`:
-    /// lateral_x=fx1+fx2,normal=-fz*0.31. Without this, htex finds the channels by their names
+    /// lateral_x=fx1+fx2,normal=-fz*0.31. By default, htex recognises the channels by their names
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Option<String>,
 
     /// Calibration of a six-axis force sensor on the first six channels, which are then called fx,
     /// fy, fz, tx, ty, tz. The file has six rows of six numbers (N and N m per volt), as CSV or as
-    /// `matrix` in TOML. A second file calibrates a sensor on the next six channels; the axes are
-    /// then called fx1, fx2, …
+    /// `matrix` in TOML. Give a second file for a sensor on the next six channels. The channels of
+    /// two sensors are called fx1, fx2, …
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
@@ -39,13 +39,13 @@ pub(crate) struct InputArgs {
     #[arg(long, value_name = "NAME:TARGET")]
     tracker: Option<String>,
 
-    /// What the columns of a tracker's file are, as ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
+    /// Roles of the columns in the tracker's file, as ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
     /// time=stamp_ms:0.001,x=#2. COLUMN is a name or a number (#2)
     #[arg(long, value_name = "MAP", requires = "tracker")]
     tracker_map: Option<String>,
 
-    /// Format of the recordings [default: csv; for the trials of a study npy, which takes a third
-    /// of the space]
+    /// Format in which to store the recordings [default: csv; for the trials of a study npy, which
+    /// takes a third of the space]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
 }

@@ -75,15 +75,15 @@ fn first_steps() -> String {
     let play = if SOUND.is_built {
         "play it as sound"
     } else {
-        "play it (as sound only with `--features audio`)"
+        "play it (sound needs a build with `--features audio`)"
     };
     format!(
         "\
 First steps:
-  htex demo out                       run everything on simulated surfaces
+  htex demo out                       try all steps on simulated surfaces
   htex fit rec.csv -o cloth.htex      fit models to your recording
   htex info cloth.htex                show the error of each model
-  htex synth cloth.htex -o cloth.wav  play it to a file
+  htex synth cloth.htex -o cloth.wav  play it to a WAV file
   htex play cloth.htex                {play}
 
 Exit status: 0 ok, 1 findings or failure, 2 wrong usage."

@@ -13,22 +13,26 @@ use crate::wasm_limits::WasmLimit;
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub(crate) struct PluginArgs {
-    /// A model's plugin: a WASM module (sandboxed) or a native library (it runs with all your
-    /// rights: load only what you trust); may be given several times
+    /// Load this plugin, which contains a model; may be given several times. A WASM module runs in
+    /// a sandbox. A native library runs with all your rights, so load only a library that you trust
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// A folder of plugins, which htex searches before HTEX_PLUGIN_PATH and the user's own folder
+    /// Search this folder for plugins, before the folders in HTEX_PLUGIN_PATH and the user's own
+    /// folder; may be given several times
     #[arg(long, value_name = "DIR")]
     plugin_dir: Vec<PathBuf>,
 
-    /// A limit on what WASM models may use; may be given several times. For each model: memory-mib
-    /// (of one instance) [64], stack-kib [256], call-ms (longest call) [5000], render-ms (for 8192
-    /// samples, or for one retune) [500], voices [256], table-elements [10000], module-mib [16],
-    /// fuel (instructions in one call) [not counted], compile-ms [5000], compile-mib [512]. For all
-    /// models of one asset together: asset-ms (time of all calls except those of
-    /// voices) [10000], asset-mib [512], asset-instances [512]. For all models in one command together: all-ms (as asset-ms)
-    /// [30000], all-mib [1024], all-instances [2048]
+    /// Limit what WASM models may use, e.g. memory-mib=128; may be given several times. The numbers
+    /// in brackets are the defaults. Limits of each model: memory-mib (memory of one instance)
+    /// [64], stack-kib [256], call-ms (time of one call that does not render) [5000], render-ms
+    /// (time to render 8192 samples, or of one retune) [500], voices [256], table-elements [10000],
+    /// module-mib (size of the module) [16], fuel (instructions in one call) [no limit], compile-ms
+    /// (time to compile the module) [5000], compile-mib (memory to compile the module) [512].
+    /// Limits that all models of one asset share: asset-ms (time to compile, and of all calls
+    /// except calls of voices) [10000], asset-mib [512], asset-instances [512]. Limits that all
+    /// models in one command share: all-ms (like asset-ms) [30000], all-mib [1024], all-instances
+    /// [2048]
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 }
@@ -88,7 +92,7 @@ pub(crate) struct PlayerArgs {
     #[command(flatten)]
     plugins: PluginArgs,
 
-    /// Do not run models that are embedded in the asset. Without this, they run in a sandbox
+    /// Do not run models that are embedded in the asset. By default, they run in a sandbox
     #[arg(long)]
     no_embedded_plugins: bool,
 }

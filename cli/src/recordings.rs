@@ -24,17 +24,17 @@ pub(crate) struct RecordingArgs {
     #[command(flatten)]
     pub(crate) settings: ReadingSettings,
 
-    /// Scanning speed, mm/s, for recordings that do not state it. It also replaces a stated speed
+    /// Scanning speed of the recordings, mm/s. If a recording states a speed, this one replaces it
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N, for recordings that do not state it. It also replaces a stated force
+    /// Normal force of the recordings, N. If a recording states a force, this one replaces it
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
     /// Speed and normal force of each recording in order, or one pair for all recordings:
     /// speed=80,force=0.4 (mm/s, N). If a recording contains the finger's motion, htex leaves out
-    /// segments that differ from this pair by more than 10 %
+    /// segments whose speed or force differs from this pair by more than 10 %
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 

@@ -33,7 +33,7 @@ pub(crate) struct SceneArgs {
 /// A device and its settings.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// The device to use instead of the scene's, by short name or id. htex then ignores the scene's
+    /// Use this device instead of the scene's, by short name or id. htex then ignores the scene's
     /// settings for its device
     #[arg(long, value_name = "ID", help_heading = "Devices")]
     pub(crate) device: Option<String>,

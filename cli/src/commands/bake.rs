@@ -19,30 +19,31 @@ const MOST: i64 = BakeLimits::MOST as i64;
 
 /// Write a texture for microcontrollers
 ///
-/// Writes a block of bytes, which a small player renders on the microcontroller
-/// (docs/microcontroller.md).
+/// Writes a block of bytes. On the microcontroller, a small player renders samples from the block
+/// (see docs/microcontroller.md).
 ///
-/// The block stores the texture at the conditions of a grid: each condition is a pair of a speed
-/// and a force. Between the conditions, the player interpolates. The command prints the block's
-/// size and its error over nine bands, at the conditions and midway between them.
+/// The block stores the texture at the conditions of a grid. A condition is a pair of a speed and a
+/// force. Between conditions, the player interpolates. The command prints the size of the block,
+/// and its nine-band error: how far its spectrum is from the asset's, over nine frequency bands. It
+/// prints this error at the conditions and midway between them.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
     asset: PathBuf,
 
-    /// Which of the asset's models to use, by short name or id [default: the one with the smallest
+    /// Model of the asset to use, by short name or id [default: the model with the smallest
     /// nine-band error]
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// A condition of the grid, e.g. speed=80,force=0.4 (mm/s, N). If you give several, give all
-    /// combinations of their speeds and forces [default: the asset's first condition, or the
-    /// strongest if the first is silent]
+    /// Store the texture at this condition, e.g. speed=80,force=0.4 (mm/s, N). May be given several
+    /// times; the conditions must then be all combinations of their speeds and forces [default: the
+    /// asset's first condition, or its strongest condition if the first is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
-    /// A grid of conditions, e.g. speed=40:160:3,force=0.2:0.6:3 (mm/s, N). Each axis is
-    /// FIRST:LAST:COUNT or one number
+    /// Store the texture at all conditions of this grid, e.g. speed=40:160:3,force=0.2:0.6:3 (mm/s,
+    /// N). Speed and force are each FIRST:LAST:COUNT or one number
     #[arg(long, value_name = "GRID")]
     grid: Option<String>,
 
@@ -50,21 +51,22 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Largest allowed nine-band error midway between conditions, dB. The command inserts
-    /// conditions until the error is within this limit or the block has 64 conditions
+    /// Insert conditions into the grid until the nine-band error midway between neighbouring
+    /// conditions is at most this, dB, or until the block has 64 conditions
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
-    /// Maximum number of coefficients in a filter, 65 to 641. A longer filter takes more time per
-    /// sample [default: 641]
+    /// Limit the number of coefficients in a filter, 65 to 641. A shorter filter takes less time
+    /// per sample, but can be less accurate [default: 641]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). A source file
-    /// states licence and author in comments. For bytes, the command writes them to FILE.license
+    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). An array file
+    /// states licence and author in comments. With .bin, the command writes licence and author to
+    /// FILE.license
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 

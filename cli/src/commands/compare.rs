@@ -21,12 +21,14 @@ use crate::recordings::RecordingArgs;
 
 /// Compare an asset with a recording
 ///
-/// Measures how far each model of an asset, or a second recording, is from a recording.
+/// Measures the difference between a recording and each model of an asset, or between two
+/// recordings.
 ///
 /// htex evaluates the models at the recording's speed and force if both are known. Otherwise it
-/// uses the asset's first condition, or the strongest one if the first is silent. `felt` counts
-/// only what a fingertip can feel: the parts of both spectra above its detection threshold,
-/// compared in third octaves.
+/// evaluates them at the asset's first condition (a speed and a force), or at the strongest
+/// condition if the first is silent. The error `felt` counts only what a fingertip can feel: in
+/// third octaves, it compares the parts of the two spectra that are above the fingertip's detection
+/// threshold.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording: {}", format_names()))]

@@ -37,16 +37,17 @@ const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: So
 
 /// Try everything on five simulated surfaces
 ///
-/// Simulates recordings, fits the six default models, plays the assets to WAV files, and writes a
-/// report.
+/// Simulates recordings, fits the six models that `htex fit` fits by default, plays the assets to
+/// WAV files, and writes a report.
 ///
-/// For each surface, writes to DIR the simulated recording (NAME.csv), the asset (NAME.htex) and 5
-/// s of each model (NAME-MODEL.wav). Also writes report.html, spectra.svg (the spectra of all
-/// recordings, with the models Bands and AR) and rig.csv (the frequency response of the simulated
-/// rig; htex divides the spectra of the recordings by it).
+/// For each surface, the command writes to DIR the simulated recording (NAME.csv), the asset
+/// (NAME.htex), and 5 s of the signal of each model (NAME-MODEL.wav). It also writes report.html,
+/// spectra.svg and rig.csv. spectra.svg shows the spectra of all recordings, and of their models
+/// Bands and AR. rig.csv is the frequency response of the simulated rig, by which htex divides the
+/// spectra of the recordings.
 ///
-/// The samples in the WAV files are newtons as 32-bit floats. They are quiet: to listen, raise
-/// their level in an audio editor.
+/// The samples in the WAV files are forces in newtons, as 32-bit floats. As sound, they are quiet.
+/// To listen, raise their level in an audio editor.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist

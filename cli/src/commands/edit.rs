@@ -16,9 +16,9 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata
 ///
-/// The command changes only the metadata that you give. An empty text (--author "") removes an
-/// entry. --tag replaces all tags. Parameters, recorded spectra and embedded models with their
-/// signatures stay the same, byte for byte.
+/// The command changes only the metadata that you give. An empty text removes an entry, e.g.
+/// --author "". --tag replaces all tags. Parameters, recorded spectra and embedded models with
+/// their signatures stay the same, byte for byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset

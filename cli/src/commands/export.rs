@@ -23,14 +23,16 @@ use crate::scene_sound::{Scene, is_scene};
 /// Write a texture in another haptic format
 ///
 /// Writes a texture or a whole scene as a file that phones, game controllers and game engines can
-/// play. A texture is written as it feels at one speed and force, or along a stroke of the finger.
+/// play. The file plays a texture as it feels at one speed and force, or along a stroke of the
+/// finger.
 ///
-/// The profile of an actuator describes how much of the spectrum it can reproduce. The command
-/// reads the written file again, plays it through the profile, compares the result with the asset's
-/// own samples, and prints the difference.
+/// The profile of an actuator describes which part of the spectrum the actuator can reproduce. The
+/// command prints how far the file is from the asset. To measure this, it reads the written file
+/// again, simulates how the actuator plays it, and compares the result with the asset's own
+/// samples.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset or the scene to export. A scene states its own motion and models
+    /// The asset or the scene to export. For a scene, the motion and the models come from the scene
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
@@ -44,8 +46,9 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write. For --to android, a name ending in .kt selects Kotlin, and any other name
-    /// JSON. For --to gltf, a name ending in .gltf selects JSON, and any other name binary (.glb)
+    /// The file to write. With --to android, the command writes Kotlin if the name ends in .kt, and
+    /// otherwise JSON. With --to gltf, it writes JSON if the name ends in .gltf, and otherwise the
+    /// binary form (.glb)
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 
@@ -60,13 +63,14 @@ struct Settings {
     #[command(flatten)]
     choice: ChoiceArgs,
 
-    /// Play along this stroke instead of at one speed and force. The CSV has columns for time,
-    /// speed and force (t_s, speed_mm_s, force_n), or for time, position and force
+    /// Export the texture along this stroke of the finger, instead of at one speed and force. The
+    /// CSV has columns for time, speed and force (t_s, speed_mm_s, force_n), or for time, position
+    /// and force
     #[arg(long, value_name = "CSV", value_parser = located::RECORDING, conflicts_with_all = ["speed", "force", "seconds"])]
     stroke: Option<PathBuf>,
 
-    /// The actuator that will play the file; `htex formats` lists the names [default: the format's
-    /// own]
+    /// Profile of the actuator that will play the file; `htex formats` lists the profiles [default:
+    /// depends on the format]
     #[arg(long, value_name = "NAME", value_parser = profile_names())]
     profile: Option<String>,
 

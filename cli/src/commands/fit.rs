@@ -23,9 +23,9 @@ use crate::report::{ReportSource, measures, shares};
 ///
 /// Writes an asset (.htex) with the models and the measured error of each.
 ///
-/// htex averages recordings whose speed and force differ by less than 5 %. They become one
-/// condition of the texture: a pair of a speed and a force. Other recordings become further
-/// conditions.
+/// A condition of a texture is a pair of a speed and a force. If the speeds and the forces of
+/// several recordings differ by less than 5 %, htex averages these recordings, and they become one
+/// condition. Other recordings become further conditions.
 #[derive(Args)]
 pub(crate) struct Fit {
     #[arg(help = format!("Recordings of one texture: {}", format_names()))]
@@ -35,7 +35,8 @@ pub(crate) struct Fit {
     #[command(flatten)]
     fit: FitSettings,
 
-    /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
+    /// Set a fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several
+    /// times. `htex plugin info MODEL` lists the options
     #[arg(long, value_name = "MODEL.NAME=VALUE", display_order = 1)]
     option: Vec<String>,
 
@@ -43,21 +44,22 @@ pub(crate) struct Fit {
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
     output: PathBuf,
 
-    /// A WASM module that contains a model. htex fits this model and embeds the module in the
-    /// asset, so that any player can play it; may be given several times
+    /// Also fit the model in this WASM module, and embed the module in the asset, so that any
+    /// player can play the model; may be given several times
     #[arg(long, value_name = "WASM", display_order = 5)]
     embed_plugin: Vec<PathBuf>,
 
-    /// Sign embedded modules with this ed25519 secret key: a file of 32 bytes
+    /// Sign the embedded modules with the ed25519 secret key in this file (32 bytes)
     #[arg(long, value_name = "FILE", requires = "embed_plugin", display_order = 6)]
     sign_with: Option<PathBuf>,
 
-    /// Draw the grid of conditions: the steady parts of the recording over speed and force, the
-    /// fitted conditions with their repeatability, and the mesh between them
+    /// Draw the grid that --grid fits, as an SVG picture over speed and force. It shows the steady
+    /// parts of the recordings, the fitted conditions with their repeatability, and the mesh
+    /// between the conditions
     #[arg(long, value_name = "SVG", requires = "grid", display_order = 8)]
     grid_svg: Option<PathBuf>,
 
-    /// Draw the spectra and errors of all models into this HTML page, as `htex demo` does
+    /// Write an HTML page with the spectra and errors of all models, like the report of `htex demo`
     #[arg(long, value_name = "HTML", value_parser = located::OUTPUT, display_order = 9)]
     report: Option<PathBuf>,
 

@@ -10,7 +10,8 @@ use crate::output::show;
 
 /// List the formats to import and export
 ///
-/// Prints what each format keeps and loses of a texture, and the profiles of actuators.
+/// For each format, prints what a file of this format keeps of a texture, and what it loses. Also
+/// lists the profiles of actuators (--profile).
 #[derive(Args)]
 pub(crate) struct Formats {
     /// Print JSON instead of lists

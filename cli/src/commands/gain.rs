@@ -23,15 +23,16 @@ const LARGE_STEP_DB: f64 = 4.0;
 /// The participant touches the display and adjusts how strong the texture is. htex stores the gain,
 /// and `htex play --person` uses it.
 ///
-/// The texture plays without end. Type `+` or `-` and Enter to make it 1 dB stronger or weaker, and
-/// `++` or `--` and Enter for 4 dB. Press only Enter to accept the gain, or Ctrl-C to leave without
-/// storing one. The gain starts 20 dB below the device's limit, so that the finger feels nothing
-/// stronger than the participant asked for. (In the paper, participants start at the limit.)
+/// The texture plays without end. Type `+` or `-` and Enter to make it 1 dB stronger or weaker.
+/// `++` or `--` and Enter change it by 4 dB. Press only Enter to accept the gain, or Ctrl-C to
+/// leave without storing one. By default, the texture starts 20 dB below the device's limit, and
+/// becomes stronger only when the participant asks for it. (In the paper, participants start at the
+/// limit.)
 ///
-/// htex stores one gain for each combination of person, texture and device. All models of a texture
-/// share this gain. htex identifies a texture by its name and author, so the gain stays valid if
-/// you fit the texture again. In the paper, participants found the gain with the model AR
-/// (`--model ar`), and all models were played with it.
+/// htex stores one gain for each combination of a person, a texture, and a device with its profile.
+/// All models of a texture share this gain. htex identifies a texture by its name and author, so
+/// the gain stays valid if you fit the texture again. In the paper, participants found the gain
+/// with the model AR (`--model ar`), and all models were then played with this gain.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
@@ -41,11 +42,12 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "NAME")]
     person: String,
 
-    /// Drive at the start, as its largest voltage, V [default: a tenth of the device's limit]
+    /// Largest voltage of the drive at the start, V [default: a tenth of the device's limit]
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
-    /// Name under which htex stores the gain, if another texture has the same name and author
+    /// Store the gain under this name instead of the texture's own, e.g. because another texture
+    /// has the same name and author
     #[arg(long, value_name = "NAME")]
     texture: Option<String>,
 

@@ -19,13 +19,16 @@ use crate::plugins::PluginArgs;
 /// Read another haptic format as a texture
 ///
 /// A model file of the Penn Haptic Texture Toolkit states its units, speeds and forces, so it
-/// becomes a texture directly. From a glTF file, htex takes the `.htex` asset that a
-/// material embeds, unchanged. A file of any other format is a signal without this information. htex fits models to
-/// this signal as to a recording, so give the value of its full scale (--full-scale), and the speed
-/// and the force at which the file is felt (--speed, --force).
+/// becomes a texture directly. If a material in a glTF file embeds a `.htex` asset, htex takes this
+/// asset unchanged.
 ///
-/// htex takes licence and author from the file, or from FILE.license next to it, unless you give
-/// them. `htex formats` lists what each format keeps and loses.
+/// A file of any other format is a signal or an image that does not state its units, speed and
+/// force. Give the value of its full scale (--full-scale), and the speed and the force at which the
+/// file is felt (--speed, --force). htex fits models to a signal as to a recording. An image
+/// becomes a friction map.
+///
+/// Unless you give --license and --author, htex takes licence and author from the file, or from
+/// FILE.license next to the file. `htex formats` lists what each format keeps and loses.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -56,22 +59,23 @@ struct Settings {
     #[command(flatten)]
     signal: SignalSettings,
 
-    /// Physical quantity of the signal, whose unit --full-scale has
+    /// Physical quantity of the signal. The value of --full-scale is in the unit of this quantity
     #[arg(long, value_enum, default_value_t, display_order = 1)]
     quantity: Quantity,
 
-    /// Speed of the finger, mm/s
+    /// Speed of the finger at which the file is felt, mm/s
     #[arg(long, value_name = "MM_S", display_order = 1)]
     speed: Option<f64>,
 
-    /// Normal force of the finger, N
+    /// Normal force of the finger at which the file is felt, N
     #[arg(long, value_name = "N", display_order = 1)]
     force: Option<f64>,
 
     #[command(flatten)]
     fit: FitSettings,
 
-    /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
+    /// Set a fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several
+    /// times. `htex plugin info MODEL` lists the options
     #[arg(long, value_name = "MODEL.NAME=VALUE", display_order = 1)]
     option: Vec<String>,
 }

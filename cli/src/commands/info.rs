@@ -12,11 +12,11 @@ use crate::output::show;
 /// Show what an asset holds, and its errors
 ///
 /// Prints the asset's metadata, and a table with a row for each model and condition (a speed and a
-/// force). `level` is the RMS in the asset's unit, and `corr.` the Pearson correlation with the
-/// recorded spectrum. `bands/dB`, `third-oct/dB` and `log-sp/dB` are errors of the model's
-/// spectrum: over nine overlapping bands, over third octaves, and over all frequencies. The columns
-/// `played…` show the same errors for samples that the model rendered. `bytes` is the size of the
-/// model's parameters.
+/// force). `level` is the RMS in the asset's unit, and `corr.` is the Pearson correlation with the
+/// recorded spectrum. Three columns show errors of the model's spectrum: `bands/dB` over nine
+/// overlapping bands, `third-oct/dB` over third octaves, and `log-sp/dB` over all frequencies. The
+/// columns `played…` show the same errors for samples that the model rendered. `bytes` is the size
+/// of the model's parameters.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset

@@ -25,16 +25,18 @@ use crate::wasm_limits::WasmLimit;
 /// Build a library of textures from a recipe
 ///
 /// Fits the recordings that the recipe names, and imports files as `htex import` does. Writes the
-/// library DIR/NAME.htexlib, the folder DIR/textures, the report DIR/build-report.json and the
-/// catalogue DIR/index.html. If the build fails, the report contains the error. The recordings and
-/// other files that a recipe names may be URIs.
+/// library (DIR/NAME.htexlib), the single textures (in DIR/textures), a report
+/// (DIR/build-report.json) and a catalogue (DIR/index.html). If the build fails, the report
+/// contains the error. The recordings and other files that a recipe names may be URIs.
 ///
-/// Finished fits stay in DIR/.htex-build. A build that was killed continues from there, and a
-/// repeated build fits only what has changed.
+/// Finished fits stay in DIR/.htex-build. If a build was killed, run the same command again, and it
+/// continues with these fits. A repeated build fits only what has changed.
 ///
 /// Exit status: 0 if every texture was made; 1 if none was made or the build failed; 2 for wrong
-/// usage; 3 if some textures were made and others left out. htex leaves out a texture that misses a
-/// gate (a limit in the recipe), and with --keep-going a texture that cannot be made.
+/// usage; 3 if some textures were made and others left out.
+///
+/// htex leaves out a texture that does not meet a gate, which is a requirement in the recipe, e.g.
+/// a largest error. With --keep-going, it also leaves out a texture that cannot be made.
 #[derive(Args)]
 pub(crate) struct Build {
     /// Path or URI of the recipe, e.g. library.toml. `htex schema recipe` prints its JSON Schema
@@ -45,8 +47,8 @@ pub(crate) struct Build {
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 
-    /// Folder of this machine in which htex makes the results for a URI. Keep it: the next build
-    /// continues from its contents [default: a folder in the user's cache]
+    /// Local folder in which htex makes the results if --output is a URI. Keep this folder, because
+    /// the next build continues from its contents [default: a folder in the user's cache]
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
 
@@ -68,23 +70,24 @@ pub(crate) struct Build {
     #[arg(long)]
     dry_run: bool,
 
-    /// A model's plugin to fit with: a WASM module (sandboxed) or a native library (it runs with
-    /// all your rights: load only what you trust); may be given several times. A recipe itself can
-    /// name only WASM modules
+    /// Make the model in this plugin available to the recipe; may be given several times. The
+    /// plugin is a WASM module, which runs in a sandbox, or a native library, which runs with all
+    /// your rights, so load only a library that you trust. A recipe itself can name only WASM
+    /// modules
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// Remove unused fits at once. Without this, they stay for 30 days, so that you can undo a
-    /// change of a setting without fitting again
+    /// Remove unused fits at once. By default, they stay for 30 days: if you undo a change of a
+    /// setting in this time, htex need not fit again
     #[arg(long)]
     prune: bool,
 
-    /// Folder of the browser package. The catalogue then contains a copy of this package and plays
-    /// the textures with it, instead of short sounds
+    /// Let the catalogue play the textures themselves instead of short sounds. DIR is the folder of
+    /// the browser package, which htex copies into the catalogue
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 
-    /// A limit on what WASM models may use; `htex fit --help` lists the names
+    /// Limit what WASM models may use; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 

@@ -29,7 +29,7 @@ pub(crate) struct Make {
     #[arg(long, value_name = "NAME=NUMBER", num_args = 1.., required = true)]
     set: Vec<String>,
 
-    /// RMS of the texture, in the unit of --quantity (newtons for a force)
+    /// RMS of the samples, in the unit of --quantity (newtons for a force)
     #[arg(long, value_name = "RMS")]
     level: f64,
 

@@ -13,8 +13,9 @@ use crate::plugins::PlayerArgs;
 
 /// Make a texture between two others
 ///
-/// Each model that describes both textures interpolates between their parameters, as it does
-/// between the recorded speeds and forces of one texture. The new asset names the two textures.
+/// For each model that both textures have, htex interpolates between the parameters of the two
+/// textures. It uses the same interpolation as between the recorded speeds and forces of one
+/// texture. The new asset states the names of the two textures.
 #[derive(Args)]
 pub(crate) struct Mix {
     /// The first texture

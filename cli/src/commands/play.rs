@@ -21,8 +21,8 @@ use crate::signals::{self, interrupted};
 ///
 /// Plays until the scene ends or you press Ctrl-C.
 ///
-/// htex plays an asset at the speed and force of its first condition, or of the strongest one if
-/// the first is silent. Without --device, it plays an asset as sound.
+/// htex plays an asset at the speed and force of its first condition, or of its strongest condition
+/// if the first is silent. An asset plays as sound unless you give --device.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -44,7 +44,7 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
 
-    /// Name under which `htex gain --texture` stored the gain, if it is not the texture's own name
+    /// Use the gain that `htex gain --texture` stored under this name
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 

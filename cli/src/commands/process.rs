@@ -18,9 +18,10 @@ use crate::recordings::RecordingArgs;
 /// Show the texture spectrum of a recording
 ///
 /// htex cuts the recording into segments of 0.2 s and computes the spectrum of each, with a Hann
-/// window. It combines the axes into one (DFT321), divides by the frequency response of the rig if
-/// you give it (--frf), and averages over the segments. The result has a magnitude every 5 Hz from
-/// 20 to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
+/// window. It combines the spectra of several axes into one (by the method DFT321), divides this
+/// spectrum by the frequency response of the rig if you give one (--frf), and averages over the
+/// segments. The result has a magnitude every 5 Hz from 20 to 1000 Hz. A sinusoid of amplitude A at
+/// one of these frequencies has the magnitude A.
 #[derive(Args)]
 pub(crate) struct Process {
     #[arg(help = format!("The recording: {}", format_names()))]

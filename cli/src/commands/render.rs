@@ -26,11 +26,12 @@ const BLOCK: usize = 4096;
 
 /// Render a scene to a file
 ///
-/// Writes exactly the samples that the scene's device would get. Renders as fast as it can, without
-/// waiting for real time.
+/// Writes exactly the samples that the scene's device would get. The command does not wait for real
+/// time: it renders as fast as the machine can.
 ///
-/// The extension of the file selects the format: WAV, CSV, NPY or raw samples. The samples are in
-/// the unit of the scene's device, e.g. newtons, the drive voltage of a display, or sound.
+/// The extension of the file selects the format: WAV, CSV, NPY or raw samples. The samples have the
+/// quantity and the unit of the scene's device, e.g. forces in newtons, drive voltages in volts, or
+/// sound.
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene

@@ -26,11 +26,13 @@ use crate::outputs::check_outputs;
 /// Measures the frequency response of a recording rig or a finger display.
 ///
 /// htex computes the response from recordings of the input and the output. If the input is an
-/// impact hammer, htex averages over the hits. It discards double hits, overloads and incomplete
-/// hits, and lists them. If the input is a continuous drive such as noise, give --continuous.
+/// impact hammer, htex averages over the hits. It discards double hits, overloaded hits and
+/// incomplete hits, and lists the discarded hits. If the input is a continuous drive such as noise,
+/// give --continuous.
 ///
-/// htex can write the response as a CSV file. Give this file to --frf of the commands that read
-/// recordings, or name it as the `response` of a scene's device.
+/// With --csv, htex writes the response to a CSV file. To correct recordings for the response of a
+/// rig, give this file to the flag --frf of commands such as `htex fit`. To correct playback for
+/// the response of a display, name the file as the `response` of a scene's device.
 #[derive(Args)]
 pub(crate) struct Response {
     #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
@@ -47,8 +49,8 @@ pub(crate) struct Response {
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     output: String,
 
-    /// Name of the time column, and its scale to seconds, e.g. time=stamp_ms:0.001; needed if htex
-    /// does not recognise the name
+    /// Name of the time column and its scale to seconds, e.g. time=stamp_ms:0.001; needed if htex
+    /// does not recognise the time column by its name
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
 

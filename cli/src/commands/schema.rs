@@ -40,7 +40,7 @@ enum What {
     Take,
     /// JSON Schema of the file of stored gains (`htex gain`)
     Gains,
-    /// Each model's parameters and fit options, with units and ranges
+    /// Descriptors of the built-in models: parameters and fit options, with units and ranges
     Models,
 }
 

@@ -59,9 +59,9 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
-    /// How frequencies and level follow the motion, as exponents of power laws:
-    /// frequency-speed=X,level-speed=X,level-force=X. The exponents change nothing at 80 mm/s and
-    /// 0.4 N. The default, 1, 0 and 1, is the law of a rigid relief
+    /// Exponents of the power laws by which frequencies and level follow speed and force:
+    /// frequency-speed=X,level-speed=X,level-force=X. At 80 mm/s and 0.4 N, the exponents have no
+    /// effect. The default, 1, 0 and 1, is the law of a rigid relief
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 
@@ -74,8 +74,9 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     lifted: f64,
 
-    /// Where to write the true spectra, for --motion free: JSON with magnitudes over the range of
-    /// speeds, and the rule that gives the magnitudes at any force
+    /// Write the true spectra of the surface to this file, for --motion free: JSON with the
+    /// magnitudes over the range of speeds, and the rule by which the magnitudes depend on the
+    /// force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
 }

@@ -15,10 +15,10 @@ use crate::plugins::PlayerArgs;
 ///
 /// Prints the spectrum of one of the asset's models, from 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// You can compare the magnitudes with the output of `htex process`: for a long recording of the
-/// played texture, `htex process` gives these magnitudes if it averages the segments by power.
-/// Outside the recorded speeds and forces, the magnitudes follow the law of the asset, as during
-/// playback.
+/// You can compare the magnitudes with the output of `htex process`: if you play the texture for a
+/// long time and record it, `htex process` prints the same magnitudes, as long as it averages the
+/// segments by power (the default, --averaging rms). Outside the recorded speeds and forces, the
+/// magnitudes follow the law of the asset, as during playback.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -44,7 +44,7 @@ pub(crate) struct Spectrum {
 /// The choice of the model that plays an asset, and of the motion.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// Which of the asset's models to use, by short name or id [default: the one with the smallest
+    /// Model of the asset to use, by short name or id [default: the model with the smallest
     /// nine-band error]
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,

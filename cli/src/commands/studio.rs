@@ -26,9 +26,10 @@ const KEY: &str = "studio.key";
 /// Touch and shape textures in the browser
 ///
 /// The studio is a page that htex serves until you press Ctrl-C, only on this machine. The command
-/// prints its address, `http://NAME.localhost:8420/`. Other users do not know NAME, which depends
-/// on a key of yours and on the folder. Chromium, Edge and Firefox find this address. For a browser
-/// that does not, such as Safari, add the line `127.0.0.1 NAME.localhost` to /etc/hosts.
+/// prints its address, `http://NAME.localhost:8420/`. NAME depends on the folder and on a secret
+/// key that htex stores for you, so that other users of the machine cannot guess the address.
+/// Chromium, Edge and Firefox find this address. For a browser that does not, such as Safari, add
+/// the line `127.0.0.1 NAME.localhost` to /etc/hosts.
 ///
 /// `cargo xtask studio --out DIR` builds the page. The page sends requests only to this address.
 #[derive(Args)]
@@ -38,8 +39,8 @@ pub(crate) struct Studio {
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
-    /// Port of the address. 0 selects any free port, at which the browser does not find the
-    /// textures that you stored earlier
+    /// Port of the address. With another port, the browser does not find the textures that you
+    /// stored before. 0 selects any free port
     #[arg(long, default_value_t = PORT, value_name = "PORT")]
     port: u16,
 }

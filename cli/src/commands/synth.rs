@@ -32,8 +32,8 @@ pub(crate) struct Synth {
     player: PlayerArgs,
 
     /// Do not apply the law of the asset: outside the recorded speeds and forces, play the texture
-    /// as it was recorded at the nearest speed and force. Without this, frequencies and level
-    /// follow the law there, and a resting finger feels nothing
+    /// as it was recorded at the nearest speed and force. By default, frequencies and level follow
+    /// the law outside the recorded speeds and forces, and a resting finger feels nothing
     #[arg(long)]
     as_recorded: bool,
 

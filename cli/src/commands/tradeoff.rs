@@ -25,12 +25,12 @@ use crate::recordings::RecordingArgs;
 
 /// Measure accuracy against bytes and time
 ///
-/// Fits models with many values of their options to your recordings, and measures error, bytes and
-/// time.
+/// Fits models to your recordings, with many values of the models' options. For each setting,
+/// measures the error, the bytes and the time.
 ///
-/// Measures each recording, and computes the medians over all recordings. Writes a page that shows
-/// each setting as a point, and the same points as CSV and JSON next to the page. To continue an
-/// interrupted sweep, run the same command again.
+/// Measures each setting on each recording, and computes the medians over all recordings. Writes a
+/// page that shows each setting as a point. The same points are in a CSV and a JSON file next to
+/// the page. To continue an interrupted sweep, run the same command again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     #[arg(help = format!("Recordings: {}", format_names()))]
@@ -41,7 +41,8 @@ pub(crate) struct Tradeoff {
     #[arg(long)]
     simulated: bool,
 
-    /// Models by short name or id, comma-separated [default: all]
+    /// Models by short name or id, comma-separated [default: the models that `htex fit` fits by
+    /// default]
     #[arg(long, value_delimiter = ',', value_name = "ID,…")]
     only: Vec<String>,
 
@@ -54,9 +55,9 @@ pub(crate) struct Tradeoff {
     /// knees)
     ///
     /// held-out: htex fits a model to the odd blocks of a recording, plays the model, and compares
-    /// the result with the even blocks in third octaves. The value 1 is as good as a second
-    /// recording. The other errors compare a model with the data to which it was fitted [default:
-    /// held-out; third-octave if a recording is too short]
+    /// the result with the even blocks in third octaves. An error of 1 means that the model is as
+    /// close as a second recording. The other errors compare a model with the recording to which it
+    /// was fitted [default: held-out; third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 

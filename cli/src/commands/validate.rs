@@ -29,9 +29,9 @@ use crate::wasm_limits::WasmLimit;
 /// place in the document or the recording. If a JSON Schema contains the same rule, the finding
 /// names the schema's rule. If this program has a model that an asset uses, htex also compares the
 /// asset's fields with the model's. In a recipe, htex checks the keys, files, plugins, options and
-/// gates.
+/// gates (requirements for the textures).
 ///
-/// The name of a file says what it is: *.htex an asset, *.htexlib a library, *.json a scene or a
+/// htex recognises a file by its name: *.htex is an asset, *.htexlib a library, *.json a scene or a
 /// descriptor, *.toml a recipe. A file with another name is an asset if it begins like a ZIP
 /// archive, a library if it begins like a library, and otherwise a recording.
 #[derive(Args)]
@@ -41,17 +41,17 @@ pub(crate) struct Validate {
     files: Vec<PathBuf>,
 
     /// Check the extension with this name against the JSON Schema in FILE (draft 2020-12). htex
-    /// downloads nothing for it. May be given several times
+    /// downloads no schemas to which FILE refers. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models that are embedded in assets (also in the assets of scenes), in a
-    /// sandbox, and compare them with the assets' fields. Without this, htex runs nothing that is
-    /// embedded in an asset
+    /// Also load the models that are embedded in assets and in the assets of scenes, and compare
+    /// them with the fields of the assets. The models run in a sandbox. By default, htex runs no
+    /// embedded model
     #[arg(long)]
     embedded_plugins: bool,
 
-    /// A limit on what WASM models may use; `htex fit --help` lists the names
+    /// Limit what WASM models may use; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse, requires = "embedded_plugins")]
     wasm_limit: Vec<WasmLimit>,
 

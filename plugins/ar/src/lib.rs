@@ -45,7 +45,7 @@ impl Model for Autoregression {
         "org.htex.ar",
         "AR",
         env!("CARGO_PKG_VERSION"),
-        "White noise through an all-pole filter: the filter's coefficients.",
+        "White noise through an all-pole filter. The parameters are the coefficients of the filter.",
     )
     .fields(&[
         StaticField::list(
@@ -53,7 +53,7 @@ impl Model for Autoregression {
             "1",
             (-1e6, 1e6),
             MAX_ORDER as u32,
-            "A_1 to A_p of x[t] = sum A_i x[t-i] + e[t], at the model rate.",
+            "A_1 to A_p in x[t] = sum A_i x[t-i] + e[t], where t counts samples at the model rate.",
         )
         .stored(Store::F64)
         // The fits to 15 simulated recordings of five surfaces have values from -3.4 to 3.3.
@@ -62,7 +62,7 @@ impl Model for Autoregression {
             .usual(UsualRange::linear(2000.0, 4000.0)),
     ])
     .options(&[
-        StaticOption::integer("order", (1, MAX_ORDER as u32), 6, "Filter order p (paper: six).")
+        StaticOption::integer("order", (1, MAX_ORDER as u32), 6, "Filter order p. The paper uses six.")
             .sweep(&[
                 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 64.0,
             ]),
@@ -71,13 +71,15 @@ impl Model for Autoregression {
             "Hz",
             (50.0, 1e6),
             2000.0,
-            "Model rate; at most twice the band's upper edge is used by a narrower band.",
+            "Rate at which the filter runs. If the band of the recording ends below 1000 Hz, the \
+             rate is at most twice the upper edge of the band.",
         )
         .sweep(&[2000.0, 2500.0, 4000.0]),
         StaticOption::choice(
             "method",
             &["yule-walker", "burg", "covariance"],
-            "Estimated from the averaged power spectrum, or from the overlap-added segments.",
+            "How the coefficients are estimated: `yule-walker` from the averaged power spectrum, \
+             `burg` and `covariance` from the overlap-added segments of the recording.",
         )
         .sweep_alone(&[0.0, 1.0, 2.0]),
     ]);

@@ -49,7 +49,7 @@ impl Model for PolesAndZeros {
         "org.htex.arma",
         "ARMA",
         env!("CARGO_PKG_VERSION"),
-        "White noise through a filter with poles and zeros: line spectral frequencies of both.",
+        "White noise through a filter with poles and zeros. The parameters are their line spectral frequencies.",
     )
     .only_named()
     .fields(&[
@@ -58,7 +58,8 @@ impl Model for PolesAndZeros {
             "rad",
             (0.0, MAX_LINE),
             MAX_ORDER as u32,
-            "Line spectral frequencies of the denominator, a sample at the model rate; they ascend inside 0 to pi.",
+            "Line spectral frequencies of the denominator, in radians per sample at the model rate. They ascend, \
+             between 0 and pi.",
         )
         .usual(UsualRange::linear(0.0, MAX_LINE)),
         StaticField::list(
@@ -66,7 +67,8 @@ impl Model for PolesAndZeros {
             "rad",
             (0.0, MAX_LINE),
             MAX_ORDER as u32,
-            "Line spectral frequencies of the numerator; of a zero on the unit circle two are equal.",
+            "Line spectral frequencies of the numerator, in radians per sample. For a zero on the unit circle, two \
+             of them are equal.",
         )
         .usual(UsualRange::linear(0.0, MAX_LINE)),
         StaticField::scalar(
@@ -89,7 +91,8 @@ impl Model for PolesAndZeros {
             "Hz",
             (50.0, 1e6),
             2000.0,
-            "Model rate; at most twice the band's upper edge is used by a narrower band.",
+            "Rate at which the filter runs. If the band of the recording ends below 1000 Hz, the rate is at most \
+             twice the upper edge of the band.",
         )
         .sweep_alone(&[2500.0, 4000.0]),
     ]);

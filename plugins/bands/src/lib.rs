@@ -88,7 +88,8 @@ impl ShapedModel for BandEnergies {
         "org.htex.bands",
         "Bands",
         env!("CARGO_PKG_VERSION"),
-        "Straight lines in decibels between knots at the apexes of bands whose energies they keep.",
+        "The energies in overlapping bands, stored as a curve of straight lines in decibels. The curve has a knot \
+         for each band.",
     )
     .keeping_level()
     .fields(&[
@@ -97,7 +98,7 @@ impl ShapedModel for BandEnergies {
             "1",
             (0.0, MAX_STEPS),
             MAX_BANDS,
-            "Level of each knot, in steps below the highest; one to 64 knots.",
+            "Level of each knot: how many steps it is below the highest knot. One to 64 knots.",
         )
         .stored(Store::Packed {
             scale: 1.0,
@@ -107,13 +108,14 @@ impl ShapedModel for BandEnergies {
         // In the fits to 15 simulated recordings of five surfaces, nine tenths of the knots are at
         // most 42 dB below the highest knot, and nearly all knots at most 60 dB.
         .usual(UsualRange::linear(0.0, 60.0)),
-        StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "The step.").stored(steps(STEP_UNIT_DB))
+        StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "Size of a step.").stored(steps(STEP_UNIT_DB))
         .usual(UsualRange::log(0.25, 3.0)),
         StaticField::scalar(
             "layout",
             "1",
             (0.0, 1.0),
-            "0: knots within the band, even in ln f; 1: from edge to edge, even in ln(f + 20 Hz).",
+            "0: knots inside the band, evenly spaced in ln f. 1: knots from edge to edge, evenly spaced in ln(f + 20 \
+             Hz).",
         )
         .stored(steps(1.0))
         .usual(UsualRange::linear(0.0, 1.0)),
@@ -123,7 +125,8 @@ impl ShapedModel for BandEnergies {
             "bands",
             (1, MAX_BANDS),
             DEFAULT_BANDS,
-            "Bands, overlapping by half. 9: those of the paper's regression; 19 divide them evenly.",
+            "Number of bands. Each overlaps its neighbours by half. 9 gives the bands of the paper's regression; \
+             with 19, the bands are half as far apart.",
         )
         .sweep(&[
             1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 19.0, 20.0,
@@ -134,15 +137,16 @@ impl ShapedModel for BandEnergies {
             "dB",
             STEP_RANGE_DB,
             DEFAULT_STEP_DB,
-            "Knots are rounded to whole steps of this, itself rounded to 0.05 dB; coarser where 255 \
-             steps would not reach the lowest knot, which counts as at most 120 dB down.",
+            "Step to which the levels of the knots are rounded. The step itself is rounded to 0.05 dB. The model \
+             uses a larger step if 255 steps would not reach the lowest knot, which is at most 120 dB below the \
+             highest knot.",
         )
         .sweep(&[3.0, 1.5, 1.0, 0.75, 0.5, 0.25]),
         StaticOption::choice(
             "layout",
             &["auto", "within", "edges"],
-            "Where the outermost knots stand: within the band, as in the paper's regression, or at its edges. `auto`: \
-             at the edges from 20 bands on.",
+            "Where the outermost knots are: `within` the frequency band, as in the paper's regression, or at its \
+             `edges`. `auto` selects `edges` for 20 bands or more.",
         )
         .sweep_alone(&[1.0]),
     ]);

@@ -79,34 +79,35 @@ impl Model for FrictionMap {
         "org.htex.map",
         "Friction map",
         env!("CARGO_PKG_VERSION"),
-        "Grey values over a surface: what is felt follows the place of the finger.",
+        "An image of the friction on a surface. The signal follows the finger's position on the image.",
     )
     .only_named()
     .fields(&[
-        StaticField::scalar("width", "1", (1.0, MOST_SIDE as f64), "Pixels of a row.")
+        StaticField::scalar("width", "1", (1.0, MOST_SIDE as f64), "Number of pixels in a row.")
             .stored(GREYS)
             .usual(UsualRange::linear(1.0, 255.0)),
-        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Distance of two pixels.")
+        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Distance between neighbouring pixels.")
             .usual(UsualRange::log(0.01, 2.0)),
         StaticField::scalar(
             "speed_mm_s",
             "mm/s",
             SPEED_MM_S,
-            "Speed at which spectrum and level are stated.",
+            "Speed for which the spectrum and the level are stated.",
         )
         .usual(UsualRange::log(20.0, 200.0)),
         StaticField::scalar(
             "force_n",
             "N",
             FORCE_N,
-            "Normal force at which the level is stated; 0 where it is not known.",
+            "Normal force for which the level is stated. 0: unknown.",
         )
         .usual(UsualRange::linear(0.0, 2.0)),
         StaticField::scalar(
             "rms",
             "1",
             (0.0, MOST_GREY),
-            "RMS of the grey values along the rows at that speed, between the edges of the band.",
+            "RMS of the grey values along the rows, at the speed speed_mm_s and within the \
+             frequency band.",
         )
         .usual(UsualRange::log(1.0, 120.0)),
         StaticField::list(
@@ -114,7 +115,7 @@ impl Model for FrictionMap {
             "1",
             (0.0, MOST_GREY),
             (MOST_SIDE * MOST_SIDE) as u32,
-            "Grey values, row by row from above; 255 is the most friction.",
+            "Grey values, row by row from the top. 255 is the highest friction.",
         )
         .stored(GREYS)
         .usual(UsualRange::linear(0.0, 255.0)),

@@ -50,7 +50,7 @@ impl ShapedModel for MelCepstrum {
         "org.htex.mfcc",
         "MFCC",
         env!("CARGO_PKG_VERSION"),
-        "Log energies in mel bands, kept as the first terms of their cosine transform.",
+        "Logarithms of the energies in mel bands, stored as the first terms of their cosine transform.",
     )
     .fields(&[
         StaticField::list(
@@ -58,7 +58,8 @@ impl ShapedModel for MelCepstrum {
             "1",
             (-1e5, 1e5),
             MAX_BANDS,
-            "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
+            "Terms c_0 to c_(n-1) of the orthonormal DCT-II of the natural logarithms of the \
+             bands' energies.",
         )
         // The fits to 15 simulated recordings of five surfaces have values from -80 to 18. The
         // first coefficient, a sum of logarithms, is by far the lowest.
@@ -70,7 +71,8 @@ impl ShapedModel for MelCepstrum {
             "inverse",
             "1",
             (0.0, 2.0),
-            "Way back to a spectrum: 0 pseudo-inverse, 1 non-negative least squares, 2 triangles.",
+            "How the spectrum is computed from the energies. 0: pseudo-inverse. 1: non-negative \
+             least squares. 2: interpolation between the bands' apexes.",
         )
         .stored(WHOLE)
         .usual(UsualRange::linear(0.0, 2.0)),
@@ -80,7 +82,7 @@ impl ShapedModel for MelCepstrum {
             "coefficients",
             (1, MAX_BANDS),
             10,
-            "Coefficients kept (paper: ten).",
+            "Number of coefficients to store. The paper uses ten.",
         )
         .sweep(&[4.0, 5.0, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0, 26.0, 32.0, 40.0])
         .not_above("bands"),
@@ -88,15 +90,16 @@ impl ShapedModel for MelCepstrum {
             "bands",
             (2, MAX_BANDS),
             26,
-            "Mel bands between the edges of the band.",
+            "Number of mel bands, between the edges of the frequency band.",
         )
         .sweep(&[26.0, 40.0])
         .sweep_alone(&[20.0, 32.0, 64.0]),
         StaticOption::choice(
             "inverse",
             &["pinv", "nnls", "interpolate"],
-            "Pseudo-inverse of the bank clipped at zero, non-negative least squares, or \
-             interpolation between the bands' apexes.",
+            "How the spectrum is computed from the energies: `pinv` uses the pseudo-inverse of the \
+             filter bank, clipped at zero; `nnls` uses non-negative least squares; `interpolate` \
+             interpolates between the bands' apexes.",
         )
         .sweep(&[0.0, 1.0, 2.0]),
     ]);

@@ -35,7 +35,8 @@ impl ShapedModel for SpectralBeta {
         "org.htex.sbeta",
         "sBeta",
         env!("CARGO_PKG_VERSION"),
-        "The spectrum's profile as a beta density over the logarithm of frequency: two numbers.",
+        "The profile of the spectrum, as a beta density over the logarithm of frequency. The two parameters \
+         determine the shape of the density.",
     )
     .fields(&[
         StaticField::scalar("alpha", "1", (1e-3, 1e6), "First shape parameter: the rise from the low edge.")
@@ -51,7 +52,7 @@ impl ShapedModel for SpectralBeta {
             "points",
             (3, 64),
             10,
-            "Spectral peaks the density is fitted to (paper: ten).",
+            "Number of spectral peaks to which the density is fitted. The paper uses ten.",
         )
         .sweep(&[3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0]),
         StaticOption::number(
@@ -59,7 +60,7 @@ impl ShapedModel for SpectralBeta {
             "1",
             (0.0, 1.0),
             0.12,
-            "Least relative distance of two such peaks (paper: 12 %, for sPeak).",
+            "Smallest relative distance between the frequencies of two such peaks. The paper uses 12 % for sPeak.",
         )
         .sweep_alone(&[0.24, 0.12, 0.06, 0.0]),
         StaticOption::number(
@@ -67,24 +68,26 @@ impl ShapedModel for SpectralBeta {
             "1",
             (0.0, 1.0),
             0.5,
-            "Smallest alpha and beta; below 1 the density may be infinite at an edge (the paper names none; 1 is \
-             its reading here).",
+            "Smallest allowed alpha and beta. With a value below 1, the density may be infinite at an edge. The \
+             paper states no bound; htex assumes that the paper used 1.",
         )
         .sweep(&[1.0, 0.0]),
         StaticOption::choice(
             "error",
             &["decibel", "magnitude"],
-            "What is least at the points: the squared difference of decibels, to which all points count alike, or that \
-             of magnitudes, which the strongest peaks decide (the paper names none; `magnitude` is its reading here).",
+            "What the fit minimises. `decibel`: the squared differences in decibels, to which all peaks and bins \
+             contribute alike. `magnitude`: the squared differences of magnitudes, which the strongest peaks \
+             dominate. The paper states neither; htex assumes that the paper used `magnitude`.",
         )
         .sweep(&[1.0, 0.0]),
         StaticOption::integer(
             "bins",
             (0, 64),
             20,
-            "Bins, even in log frequency, fitted beside the peaks; 1 is the lowest. 0: peaks alone (paper), and where \
-             the fit is above twice the largest bin, a second one with as many bins as points; the nearer in decibels \
-             is kept.",
+            "Number of bins, evenly spaced in log frequency, to which the density is fitted in addition to the \
+             peaks. The first is the lowest bin; the largest bin is always added. 0: only the peaks, as in the \
+             paper. If a fit to the peaks is higher than twice the largest bin, a second fit also uses as many bins \
+             as `points` says. The fit that is nearer in decibels is kept.",
         )
         .sweep_alone(&[0.0, 5.0, 10.0, 20.0, 40.0]),
     ]);

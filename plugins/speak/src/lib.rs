@@ -55,7 +55,7 @@ impl Model for SpectralPeak {
         "org.htex.speak",
         "sPeak",
         env!("CARGO_PKG_VERSION"),
-        "The strongest spectral peaks, each distinguishable from the next, as sinusoids.",
+        "The strongest spectral peaks, as sinusoids whose frequencies are far enough apart to be told apart.",
     )
     .fields(&[
         StaticField::list(
@@ -63,7 +63,7 @@ impl Model for SpectralPeak {
             "Hz",
             (0.0, 2000.0),
             MAX_PEAKS as u32,
-            "Frequencies of the sinusoids; those outside the band are not played.",
+            "Frequencies of the sinusoids. Sinusoids outside the band are not played.",
         )
         .stored(HERTZ)
         // The band of textures.
@@ -73,8 +73,9 @@ impl Model for SpectralPeak {
             "1",
             (0.0, 4.0),
             MAX_PEAKS as u32,
-            "Their amplitudes over the level: half the squares of those in the band, each times the part of its power that \
-             the band's bins read (1 inside, 5/6 at an edge), sum to one.",
+            "Amplitudes of the sinusoids, divided by the level. For the sinusoids in the band, half the squares of \
+             the amplitudes add up to one. In this sum, each is weighted by the part of its power that the band's \
+             bins measure (1 inside the band, 5/6 at an edge).",
         )
         .stored(RATIO)
         // A single sinusoid has the amplitude √2, because half the squares of all amplitudes add up
@@ -84,7 +85,8 @@ impl Model for SpectralPeak {
             "random_phase",
             "1",
             (0.0, 1.0),
-            "0: all start at their crest (paper); 1: phases drawn by the voice's seed.",
+            "0: all sinusoids start at their maximum, as in the paper. 1: they start at random phases, which depend \
+             on the voice's seed.",
         )
         .stored(Store::U8 {
             scale: 1.0,
@@ -98,7 +100,7 @@ impl Model for SpectralPeak {
             "count",
             (1, MAX_PEAKS as u32),
             10,
-            "Most peaks kept (paper: ten).",
+            "Maximum number of peaks to store. The paper uses ten.",
         )
         .sweep(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0]),
         StaticOption::number(
@@ -106,19 +108,21 @@ impl Model for SpectralPeak {
             "1",
             (0.0, 1.0),
             0.12,
-            "Least relative distance of two peaks (paper: 12 %).",
+            "Smallest relative distance between the frequencies of two peaks. The paper uses 12 %.",
         )
         .sweep(&[0.24, 0.12, 0.06, 0.03, 0.0]),
         StaticOption::choice(
             "phase",
             &["seed", "zero"],
-            "Where the sinusoids start: at phases drawn by the voice's seed, or all at their crest (paper).",
+            "Phases at which the sinusoids start. `seed`: random phases, which depend on the voice's seed. `zero`: \
+             all at their maximum, as in the paper.",
         ),
         StaticOption::choice(
             "frequency",
             &["interpolated", "bin"],
-            "Where a peak stands: between the bins, where a sinusoid reads as its bin and the larger neighbour do, also at \
-             the band's edges; or at its bin (paper), which reads a sinusoid up to 2.5 Hz off and 1.4 dB low.",
+            "How the frequency of a peak is measured. `interpolated`: between the bins, at the frequency of a \
+             sinusoid that would give the magnitudes of the peak's bin and of its larger neighbour. `bin`: at the \
+             bin, as in the paper; a sinusoid is then stored up to 2.5 Hz off and 1.4 dB too weak.",
         ),
     ]);
 

@@ -50,14 +50,15 @@ impl ShapedModel for SpectralSlope {
         "org.htex.sslope",
         "sSlope",
         env!("CARGO_PKG_VERSION"),
-        "An asymmetric band-pass around the dominant peak: its frequency and two filter orders.",
+        "An asymmetric band-pass around the dominant peak. The parameters are the peak's frequency \
+         and two filter orders.",
     )
     .fields(&[
         StaticField::scalar(
             "peak_hz",
             "Hz",
             (1.0, 2000.0),
-            "Dominant peak and cut-off of both filters.",
+            "Frequency of the dominant peak, which is the cut-off frequency of both filters.",
         )
         .stored(steps(0.03125))
         // The band of textures.
@@ -86,14 +87,15 @@ impl ShapedModel for SpectralSlope {
             "dB/decade",
             (1.0, 20.0),
             20.0,
-            "Slopes are rounded to whole multiples of this (paper: 20).",
+            "Step to whose multiples the slopes are rounded. The paper uses 20.",
         )
         .sweep(&[20.0, 10.0, 5.0, 1.0]),
         StaticOption::choice(
             "slopes",
             &["least-squares", "end-points", "anchored"],
-            "How slopes are measured: a line through all bins, through both ends, or through the \
-             peak.",
+            "How the slope on each side of the peak is measured. `least-squares`: by a line fitted \
+             to all bins. `end-points`: by the line through the first and the last bin. \
+             `anchored`: by a line fitted to all bins that passes through the peak.",
         )
         .sweep(&[0.0, 1.0, 2.0]),
     ]);

@@ -10,11 +10,11 @@ use crate::devices::OneDeviceArgs;
 use crate::failure::{Exit, Failure, Result};
 use crate::output::{command_line, print_json};
 
-/// Check a device against the rules of the device ABI; exit status 1 if it breaks one.
+/// Check a device against the rules of the device ABI; exit status 1 if the device breaks a rule.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check. The
-/// checks drive an output at a hundredth of its limit. They also send it samples beyond the limit,
-/// which it must refuse. Do not touch the connected hardware during the checks.
+/// checks drive an output at a hundredth of its limit. They also send samples beyond the limit,
+/// which the output must refuse. Do not touch the connected hardware during the checks.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]

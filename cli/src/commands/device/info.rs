@@ -11,8 +11,8 @@ use super::list::descriptor_text;
 /// Show a device's settings, profiles and capabilities.
 ///
 /// For an output, prints what the device can do with the given settings, e.g. its sample rates and
-/// its limit. For an input, prints its rate and its channels. The command opens the input to read
-/// them, but takes no samples.
+/// its limit. For an input, prints the rate and the channels. To find them out, the command opens
+/// the input, but it records no samples.
 #[derive(Args)]
 pub(crate) struct Info {
     #[command(flatten)]

@@ -10,12 +10,13 @@ use crate::output::{print, print_json, tamed};
 
 /// List all output and input devices.
 ///
-/// Prints each adapter (the code for one kind of device), its settings, and the devices of this
-/// kind that are connected. Notes at the end name adapters that were found but are not used.
+/// An adapter is the code for one kind of device. The command prints each adapter with its
+/// settings, and the connected devices of this kind. Notes at the end name adapters that were found
+/// but are not used.
 ///
 /// htex searches for adapters in this order: --device-file, --device-dir, the folders in
 /// HTEX_DEVICE_PATH, the user's folder, this program. If two outputs or two inputs have the same
-/// id, htex uses the first one.
+/// id, htex uses the one that it finds first.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

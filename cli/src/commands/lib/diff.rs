@@ -12,7 +12,7 @@ use crate::output::show;
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 ///
 /// Prints `-` before a texture that only the first library has, `+` before one that only the second
-/// has, and `~` before one that differs.
+/// has, and `~` before a texture that differs between the two libraries.
 #[derive(Args)]
 pub(crate) struct Diff {
     /// Path or URI of a library

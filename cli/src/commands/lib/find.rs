@@ -13,7 +13,7 @@ pub(crate) struct Find {
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 
-    /// Only textures whose names or tags contain these words, case-insensitive
+    /// Only textures whose name or tags contain all these words, case-insensitive
     words: Vec<String>,
 
     /// Only textures with this whole tag, case-insensitive; may be given several times
@@ -28,7 +28,7 @@ pub(crate) struct Find {
     #[arg(long, value_name = "N", value_parser = not_negative)]
     force: Option<f64>,
 
-    /// Only textures with this model (its id, or the last part of the id)
+    /// Only textures that have the model with this id. The last part of the id is enough, e.g. ar
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 

@@ -7,9 +7,11 @@ use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
 ///
-/// The law is printed as three exponents, e.g. `f^1 v^0 F^1`. They say how the frequencies follow
-/// the speed (f), how the level follows the speed (v), and how the level follows the force (F). The
-/// command reads only the index of the library.
+/// The law says how a texture changes at speeds and forces that were not recorded. The command
+/// prints it as three exponents, e.g. `f^1 v^0 F^1`: f says how the frequencies follow the speed, v
+/// how the level follows the speed, and F how the level follows the force.
+///
+/// The command reads only the index of the library.
 #[derive(Args)]
 pub(crate) struct Ls {
     /// Path or URI of the library

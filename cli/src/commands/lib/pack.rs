@@ -18,8 +18,8 @@ use crate::outputs::check_outputs;
 ///
 /// A texture is named after its file, without `.htex`. A texture in a folder is named after its
 /// path in that folder, e.g. wood/oak. The same textures give the same file, in any order and on
-/// any machine. Each texture must state a licence (`htex edit --license`), because libraries are
-/// made to be passed on.
+/// any machine. Each texture must state a licence (`htex edit --license`), because a library is
+/// meant to be passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -34,7 +34,8 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
-    /// Also pack textures without a licence, which only their author may pass on
+    /// Also pack textures that state no licence. Only the author of such a texture may pass on the
+    /// library
     #[arg(long)]
     unlicensed: bool,
 

@@ -10,7 +10,7 @@ use crate::checking::CheckArgs;
 use crate::failure::{Exit, Failure, Result};
 use crate::output::{command_line, print_json};
 
-/// Check a model against the rules of the model ABI; exit status 1 if it breaks one.
+/// Check a model against the rules of the model ABI; exit status 1 if the model breaks a rule.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check.
 /// `spec/model-checks.md` explains the checks.
@@ -26,8 +26,8 @@ pub(crate) struct Check {
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// Duration of the check `fuzz`, which plays random sequences of calls, s [default: 16
-    /// sequences]
+    /// Run the check `fuzz` for this time, s. The check plays random sequences of calls [default:
+    /// until it has played 16 sequences]
     #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
     fuzz: Option<Duration>,
 
@@ -35,8 +35,8 @@ pub(crate) struct Check {
     #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
-    /// Compare with the same model in the other form: a WASM module for a native library, or the
-    /// reverse [default: the file next to the model, if there is one]
+    /// Compare the model with the same model in the other form: for a native library give a WASM
+    /// module, and the reverse [default: the other form next to FILE, if there is one]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
 }

@@ -16,8 +16,8 @@ use crate::plugins::PluginArgs;
 /// the user's folder, this program.
 ///
 /// If several models have the same id, htex uses the first one that --plugin names. If --plugin
-/// names none of them, the first place that has the model decides the major version. htex then uses
-/// the newest version with this major version, wherever it was found.
+/// names none of them, the first of these places that has the model decides the major version. Of
+/// all models with this id and major version, htex then uses the newest, wherever it was found.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

@@ -11,7 +11,8 @@ use crate::output::print;
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
 
-/// Write the project of a new model, which builds with one command and passes `htex plugin check`.
+/// Write a project for a new model; the project builds with one command and passes `htex plugin
+/// check`.
 #[derive(Args)]
 pub(crate) struct New {
     /// Name of the model: lower-case letters, digits and hyphens

@@ -18,8 +18,8 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {
-    /// Show the guidance on a web page of this machine instead of the terminal. The command prints
-    /// the address of the page, on which you start the session
+    /// Show the guidance on a web page of this machine instead of in the terminal. The command
+    /// prints the address of the page. Start the session on the page
     #[arg(long)]
     page: bool,
 
@@ -33,7 +33,7 @@ pub(super) struct GuideArgs {
     )]
     port: u16,
 
-    /// Length of a stroke in the guidance, mm
+    /// Length of the strokes that the guidance shows, mm
     #[arg(long, value_name = "MM", default_value_t = 80.0)]
     stroke: f64,
 }

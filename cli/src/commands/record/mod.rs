@@ -25,13 +25,14 @@ use guide::{Guide, GuideArgs};
 
 /// Record a finger on a surface, with guidance
 ///
-/// Records one take (a recording of --seconds). If the take leaves the target speed or force, or if
-/// the finger slides too little, htex sets it aside and records another one.
+/// A take is a recording of --seconds. If the speed or the force of a take leaves its target, or if
+/// the finger slides too little, htex sets the take aside and records another one. The command ends
+/// with the first good take.
 ///
 /// htex stores takes as DIR/NAME-001.csv and so on. A JSON file next to each take contains all
 /// settings, and DIR/tracker contains the rows of the tracker. Takes that were set aside are in
-/// DIR/rejected, and incomplete takes in DIR/incomplete. htex writes each second of a take to disk
-/// before the next one. If a crash interrupts a take, the next run of the command recovers it.
+/// DIR/rejected, and incomplete takes in DIR/incomplete. During a take, htex writes to disk every
+/// second. If a crash interrupts a take, the next run of the command recovers what was written.
 #[derive(Args)]
 pub(crate) struct Record {
     /// Source of the signals: a recording to replay (file:rec.csv), analog inputs of a National
@@ -52,7 +53,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     input: InputArgs,
 
-    /// Name of the takes; their file names begin with it
+    /// Name of the takes, with which their file names begin
     #[arg(long, value_name = "NAME", default_value = "take")]
     take: String,
 
@@ -60,14 +61,14 @@ pub(crate) struct Record {
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     seconds: f64,
 
-    /// Time before each take in which the finger gets into its motion, s [default: 3, or 0 with
+    /// Countdown before each take, s, during which the finger starts to move [default: 3, or 0 with
     /// --fast]
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract from each signal its mean without a finger on the surface (not from positions and
-    /// speeds). htex measures the means for one second, before the first take (once) or before each
-    /// take (each)
+    /// Subtract from each signal its offset: its mean while no finger is on the surface. Positions
+    /// and speeds stay as they are. htex measures the offsets for one second, before the first take
+    /// (once) or before each take (each)
     #[arg(
         long,
         value_enum,
@@ -85,21 +86,22 @@ pub(crate) struct Record {
     #[arg(long, value_name = "N")]
     target_force: Option<f64>,
 
-    /// Tolerance of the targets, as a fraction of the target. In the sweeps, mean, minimum and
-    /// maximum of speed and force may differ from the target by this much
+    /// Allowed difference from the target speed and force, as a fraction of the target. In the
+    /// middles of the sweeps, the mean, the minimum and the maximum of speed and force must be
+    /// within this tolerance
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
-    /// Minimum fraction of a take in which the finger slides on target: with the target force, and
-    /// with a speed from half of the target to the tolerance above it. Without a target, any
-    /// sliding counts. htex records a take below this minimum again; 0 disables the test. The
+    /// Accept a take only if the finger slides on target for at least this fraction of the take. On
+    /// target means: with the target force, and with a speed from half of the target to the
+    /// tolerance above the target. Without a target, any sliding counts. 0 turns this test off. The
     /// fraction is never 1, because the finger turns between sweeps
     #[arg(long, value_name = "PART", default_value_t = Requirements::USUAL_ON_TARGET)]
     min_on_target: f64,
 
-    /// Minimum number of complete sweeps in a take. htex records a take with fewer sweeps again; 0
-    /// disables the test [default: half of the strokes that the target makes in a take, not
-    /// counting the first and the last one, e.g. 4 for 10 s at 80 mm/s; 0 without a target speed]
+    /// Accept a take only if it has at least this number of complete sweeps. 0 turns this test off
+    /// [default: half of the strokes that the guidance shows in a take, not counting the first and
+    /// the last stroke, e.g. 4 for 10 s at 80 mm/s; 0 without a target speed]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 

@@ -16,8 +16,8 @@ const CSS_PIXEL_MM: &str = "0.2646";
 #[derive(Args)]
 #[command(next_help_heading = "Session")]
 pub(super) struct AskingArgs {
-    /// Ask on a web page of this machine instead of the terminal. The command prints the address of
-    /// the page
+    /// Ask on a web page of this machine instead of in the terminal. The command prints the address
+    /// of the page
     #[arg(long)]
     page: bool,
 

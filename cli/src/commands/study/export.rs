@@ -16,9 +16,9 @@ use crate::output::{show, shown, warn, write_file};
 ///
 /// The table of ratings has the columns participant, texture, model, repetition, rating, attribute,
 /// hidden_reference, response_ms, gain_db, simulated and off_target. The column off_target says
-/// whether speed or force left the study's target by more than 10 %; it is empty if neither was
-/// measured. The table of spectra has the columns participant, texture, model, and a magnitude for
-/// 20, 25, …, 1000 Hz.
+/// whether speed or force left the study's target by more than 10 %. The column is empty if neither
+/// speed nor force was measured. The table of spectra has the columns participant, texture, model,
+/// and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(crate) struct Export {
     /// Folder with the answers, as written by `htex study run`

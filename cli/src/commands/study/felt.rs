@@ -18,8 +18,8 @@ use crate::output::warn;
 /// The source that records what participants feel.
 #[derive(Args)]
 pub(super) struct FeltArgs {
-    /// Record what the finger feels during each trial. The source is analog inputs of a National
-    /// Instruments card (daq:Dev1/ai0:5), a recording that is replayed in each trial
+    /// Record what the finger feels during each trial, from this source: analog inputs of a
+    /// National Instruments card (daq:Dev1/ai0:5), a recording that is replayed in each trial
     /// (file:rec.csv), or another source in `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: Option<String>,

@@ -26,8 +26,8 @@ use crate::failure::{Failure, Result};
 
 /// Plan, run and analyse rating studies
 ///
-/// A file such as study.toml describes a study; `htex schema study` prints its JSON Schema. The
-/// defaults come from the study in the paper.
+/// A study is described by a file such as study.toml. `htex schema study` prints the JSON Schema of
+/// such files. The defaults are the values of the study in the paper.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]

@@ -26,9 +26,9 @@ use crate::signals;
 /// Run the session of a participant: play each trial on the device, ask, and store the answer.
 ///
 /// Each answer is a line of DIR/PARTICIPANT.jsonl, which is on disk before the next trial begins.
-/// If a session was left (q, Ctrl-C) or killed, run the same command again to continue it. htex
-/// does not mix answers to different versions of a study, its assets or its device: if one of them
-/// has changed, it refuses to continue.
+/// If a session was left (q, Ctrl-C) or killed, run the same command again to continue it. If the
+/// study, one of its assets or the device has changed since the session began, htex refuses to
+/// continue. Answers to different versions are therefore never mixed.
 #[derive(Args)]
 pub(crate) struct Run {
     /// The study: study.toml

@@ -28,13 +28,13 @@ pub(super) struct SpectraArgs {
     study: Option<PathBuf>,
 
     /// What to do with recordings of trials whose speed or force left the study's target by more
-    /// than 10 %. This limit comes from the recording of textures; participants do not have to keep
-    /// to it
+    /// than 10 %. This is the limit for recordings of textures. Participants do not have to keep to
+    /// it
     #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 
-    /// Frequency response of the sensor that recorded the trials: a CSV as for --frf. htex divides
-    /// the spectra of the trials by it
+    /// Divide the spectra of the trials by this frequency response of the sensor that recorded
+    /// them: a CSV as for --frf
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
     felt_frf: Option<PathBuf>,
 

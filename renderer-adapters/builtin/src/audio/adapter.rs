@@ -40,7 +40,8 @@ impl Adapter for Audio {
 
 static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
     let buffer_ms = SettingKind::Number { min: 5.0, max: 10_000.0 };
-    let about = "Samples kept ready for the card, milliseconds. A larger buffer is safer, a smaller one has less latency.";
+    let about = "Duration of the samples that are kept ready for the card, milliseconds. A larger \
+                 buffer is safer, a smaller one has less latency.";
     Descriptor {
         id: "org.htex.audio".to_owned(),
         name: "Sound".to_owned(),

@@ -91,7 +91,8 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         settings,
         mapping: Some(Mapping {
             plays: "the samples, times the factor of each channel".to_owned(),
-            loses: "nothing in the samples; but an actuator has its own frequency response, and both actuators of a DualSense play the same texture".to_owned(),
+            loses: "nothing of the samples. But an actuator has its own frequency response, and both actuators of a \
+                    DualSense play the same texture".to_owned(),
         }),
         ..Descriptor::default()
     }

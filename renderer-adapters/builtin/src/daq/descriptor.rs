@@ -58,21 +58,25 @@ fn settings() -> Vec<Setting> {
             "dc_limit_v",
             number(0.01, 1_000.0),
             "1",
-            "Largest direct voltage at the display, i.e. mean over any 100 ms, positive or negative, volts. Samples that would \
-             exceed it are not output, and the output goes to zero.",
+            "Largest direct voltage at the display, positive or negative, volts. The direct \
+             voltage is the mean over any 100 ms. Samples that would exceed this limit are not \
+             output, and the output goes to zero.",
         )
         .with_from_scene(FromScene::Less),
         Setting::hardware(
             "carrier_hz",
             number(0.0, 100_000.0),
             "7000",
-            "Frequency of the carrier, hertz. At most the sample rate divided by 2.5. 0: no carrier; then also choose `dc_limit_v`.",
+            "Frequency of the carrier, hertz, at most the sample rate divided by 2.5. 0: no \
+             carrier; then also set `dc_limit_v`.",
         ),
         Setting::hardware(
             "buffer_ms",
             number(10.0, MOST_TO_ZERO_MS),
             "200",
-            "Samples kept ready for the card, milliseconds. A larger buffer is safer, a smaller one has less latency. At most 400 together with `ramp_ms`.",
+            "Duration of the samples that are kept ready for the card, milliseconds. A larger \
+             buffer is safer, a smaller one has less latency. The sum of `buffer_ms` and `ramp_ms` \
+             is at most 400.",
         )
         .with_live_default("20")
         .with_from_scene(FromScene::Less),
@@ -80,7 +84,9 @@ fn settings() -> Vec<Setting> {
             "ramp_ms",
             number(1.0, MOST_TO_ZERO_MS),
             "20",
-            "Ramp before the first and after the last sample if that sample is not zero, milliseconds. At most 400 together with `buffer_ms`.",
+            "Duration of the ramps from zero to the first sample and from the last sample to zero, \
+             milliseconds. There is no ramp for a sample that is zero. The sum of `buffer_ms` and \
+             `ramp_ms` is at most 400.",
         )
         .with_from_scene(FromScene::More),
         Setting::hardware(
@@ -95,9 +101,10 @@ fn settings() -> Vec<Setting> {
 fn paper() -> Profile {
     profile(
         "pcie-6321_tabor-9200a_sct3250",
-        "The rig of Balasubramanian & Vardar (2026). From the paper: NI PCIe-6321, Tabor 9200A, 3M \
-         SCT3250, carrier 7 kHz, at most 150 V peak at the display. From the card: 16 bits, -10 to \
-         10 V. The paper does not state the amplifier's gain: 50 is assumed, so measure yours.",
+        "The rig of Balasubramanian & Vardar (2026). The paper states: NI PCIe-6321, Tabor 9200A, \
+         3M SCT3250, carrier 7 kHz, at most 150 V peak at the display. The card has 16 bits and \
+         outputs -10 to 10 V. The paper does not state the amplifier's gain. The profile assumes \
+         50, so measure yours.",
         &[
             ("amplifier_gain", "50"),
             ("limit_v", "150"),

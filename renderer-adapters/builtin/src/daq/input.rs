@@ -42,7 +42,8 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
                 "range_v",
                 number(0.001, 100.0),
                 "10",
-                "Largest voltage of an input, positive or negative, volts. The card uses its next larger range.",
+                "Largest voltage of an input, positive or negative, volts. The card uses its \
+                 smallest range that includes this voltage.",
             ),
             Setting::hardware(
                 "terminals",

@@ -31,21 +31,24 @@ fn settings() -> Vec<Setting> {
             "format",
             SettingKind::choice(&["auto", "wav", "csv", "npy", "raw"]),
             "auto",
-            "auto: by the file's extension. wav: one channel, at most 4 GiB. csv: time in seconds \
-             and the quantity, in its unit. npy: one dimension. raw: little-endian, no header.",
+            "auto: the file's extension selects the format. wav: one channel, at most 4 GiB. csv: \
+             columns for the time in seconds and for the quantity in its unit. npy: one dimension. \
+             raw: little-endian, no header.",
         ),
         setting(
             "encoding",
             SettingKind::choice(&["f32", "i24", "i16"]),
             "f32",
-            "f32 holds the quantity in its unit. i24 and i16 hold steps of full_scale / 2^23 and \
-             full_scale / 2^15; npy has no i24, csv no integers.",
+            "f32: the quantity in its unit. i24: integers in steps of full_scale / 2^23. i16: \
+             integers in steps of full_scale / 2^15. npy does not support i24, and csv supports \
+             only f32.",
         ),
         setting(
             "full_scale",
             number(1e-6, MOST),
             "1",
-            "Value at full scale of i24 and i16, in the quantity's unit; must be 1 for f32.",
+            "Value for which full scale stands with i24 and i16, in the quantity's unit. Must be 1 \
+             with f32.",
         ),
         setting(
             "quantity",
@@ -58,13 +61,15 @@ fn settings() -> Vec<Setting> {
             "limit_v",
             number(0.0, MOST),
             "0",
-            "Only for display_voltage, which requires it: the largest magnitude, volts. 0: not set.",
+            "Largest magnitude of the samples, volts. Only for the quantity display_voltage, which \
+             requires a value above 0.",
         ),
         setting(
             "carrier_hz",
             number(0.0, 500_000.0),
             "0",
-            "Only for display_voltage: the carrier that the display needs, hertz. 0: no carrier.",
+            "Frequency of the carrier that the display needs, hertz. Only for the quantity \
+             display_voltage. 0: no carrier.",
         ),
     ]
 }

@@ -18,8 +18,9 @@ pub fn reducing_settings() -> Vec<Setting> {
         "gain",
         SettingKind::Number { min: 0.0, max: 100.0 },
         DEFAULT_GAIN,
-        "The motor's strength is this gain times the level (RMS, where 1 is full scale), at most 1. With a gain of 3, a third of \
-         full scale gives full strength. This is about the level that noise can reach without clipping.",
+        "The motor's strength is this gain times the level (RMS, where 1 is full scale), at most \
+         1. With a gain of 3, a level of a third of full scale gives full strength. Noise can \
+         reach about this level without clipping.",
     );
     let block = Setting::hardware(
         "block_ms",
@@ -37,7 +38,8 @@ pub fn buffer_setting() -> Setting {
         "buffer_ms",
         SettingKind::Number { min: 10.0, max: 10_000.0 },
         usual,
-        "Samples kept ready, milliseconds, at least two blocks. A larger buffer is safer, a smaller one has less latency.",
+        "Duration of the samples that are kept ready, milliseconds: at least two blocks. A larger \
+         buffer is safer, a smaller one has less latency.",
     )
     .with_live_default(live)
     .with_from_scene(FromScene::Less)

@@ -38,7 +38,9 @@ pub(crate) fn all() -> Vec<Setting> {
             "form",
             SettingKind::choice(&["points", "pcm", "pwle"]),
             "points",
-            "What is played: points, samples at the controller's rate (pcm), or envelopes on an application's vibrator (pwle; `runtime` then names the application's library).",
+            "What is played. points: an amplitude and a frequency for each block. pcm: samples at \
+             the controller's rate. pwle: envelopes on the vibrator of an application; `runtime` \
+             then names the application's library.",
         ),
         Setting::hardware(
             "hand",

@@ -89,11 +89,11 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         summary: "The two motors of a gamepad or joystick, through SDL 2.".to_owned(),
         settings,
         mapping: Some(Mapping {
-            plays: "the level of each block of block_ms, on a large and a small motor: only the large motor up to a mean frequency of 60 Hz, \
-                    only the small motor from 420 Hz"
+            plays: "the level of each block of block_ms, divided between a large and a small motor by the mean \
+                    frequency of the block: up to 60 Hz only the large motor plays, from 420 Hz only the small motor"
                 .to_owned(),
-            loses: "the waveform and the spectrum: a motor has its own frequency, which rises with its strength, and takes some \
-                    20 to 100 ms to start"
+            loses: "the waveform and the spectrum: a motor vibrates at its own frequency, which rises with the \
+                    motor's strength, and takes about 20 to 100 ms to start"
                 .to_owned(),
         }),
         ..Descriptor::default()

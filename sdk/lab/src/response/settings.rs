@@ -16,64 +16,67 @@ const FEWEST_SAMPLES: f64 = 16.0;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct ResponseSettings {
-    /// h1: for noise in the output; h2: for noise in the input; hv: for noise in both (total least
-    /// squares)
+    /// Estimator of the response: h1 if the output has noise, h2 if the input has noise, hv if both
+    /// have noise (total least squares)
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "h1"))]
     pub estimator: Estimator,
 
-    /// Length of a window, s: the part of the recording that is transformed at a time. The response
-    /// has a value every 1/length Hz; lengths that are multiples of 0.2 s include the 5 Hz grid of
-    /// texture spectra
+    /// Length of a window, s. htex transforms the recording in windows of this length, so that the
+    /// response has a value every 1/length Hz. If the length is a multiple of 0.2 s, these
+    /// frequencies include the frequencies of texture spectra, which are 5 Hz apart
     #[cfg_attr(feature = "clap", arg(long = "window", value_name = "S", default_value_t = 1.0))]
     pub window_s: f64,
 
-    /// Lowest frequency, Hz
+    /// Lowest frequency of the response, Hz
     #[cfg_attr(feature = "clap", arg(long = "low", value_name = "HZ", default_value_t = 20.0))]
     pub low_hz: f64,
 
-    /// Highest frequency, Hz; half of the sample rate if that is lower
+    /// Highest frequency of the response, Hz. If half of the sample rate is lower, the response
+    /// ends at half of the sample rate
     #[cfg_attr(feature = "clap", arg(long = "high", value_name = "HZ", default_value_t = 1000.0))]
     pub high_hz: f64,
 
-    /// Magnitude of the input at which its sensor or amplifier is overloaded. Without it, four
-    /// equal samples in a row at the highest or lowest value count as an overload
+    /// Count the input as overloaded where its magnitude reaches this value. By default, four equal
+    /// samples in a row at the highest or lowest value count as an overload
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
-    /// Magnitude of the output at which its sensor or amplifier is overloaded. Without it, the same
+    /// Count the output as overloaded where its magnitude reaches this value. By default, the same
     /// rule applies as for the input
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 
-    /// The input is a continuous drive, such as noise or a sweep: use Hann windows with half
-    /// overlap
+    /// Measure with a continuous drive, such as noise or a sweep, instead of the hits of a hammer.
+    /// htex then uses Hann windows, each of which overlaps the previous one by half
     #[cfg_attr(feature = "clap", arg(
         long,
         conflicts_with_all = ["pre_trigger_s", "trigger", "double", "force_window_s", "exponential_s"]
     ))]
     pub continuous: bool,
 
-    /// Hits: time before the trigger that belongs to the window, s; the mean of that part is
-    /// removed [default: 0.02]
+    /// For hits: begin each window this time before the trigger, s. htex subtracts the mean of this
+    /// part from the window [default: 0.02]
     #[cfg_attr(feature = "clap", arg(long = "pre-trigger", value_name = "S"))]
     pub pre_trigger_s: Option<f64>,
 
-    /// Hits: level at which a hit starts, relative to the largest input of the recording [default:
-    /// 0.1]
+    /// For hits: level at which a hit starts, as a fraction of the largest input of the recording
+    /// [default: 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub trigger: Option<f64>,
 
-    /// Hits: size of a second contact that makes a double hit, relative to the hit [default: 0.1]
+    /// For hits: discard a hit as a double hit if its window has a second contact of at least this
+    /// size, as a fraction of the hit [default: 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub double: Option<f64>,
 
-    /// Hits: time after the trigger, s, from which on the input is faded to zero; this removes
+    /// For hits: fade the input to zero from this time after the trigger on, s. This removes the
     /// noise between hits
     #[cfg_attr(feature = "clap", arg(long = "force-window", value_name = "S"))]
     pub force_window_s: Option<f64>,
 
-    /// Hits: time constant of an exponential window on both channels, s, for responses that outlast
-    /// the window. The window raises their damping by the inverse of this time constant
+    /// For hits: multiply both channels by an exponential window with this time constant, s, if
+    /// responses last longer than the window. This raises the measured damping by the inverse of
+    /// the time constant
     #[cfg_attr(feature = "clap", arg(long = "exponential", value_name = "S"))]
     pub exponential_s: Option<f64>,
 }

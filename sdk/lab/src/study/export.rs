@@ -48,10 +48,10 @@ pub struct Export {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
-    /// These trials are averaged with the others, and counted.
+    /// Average these trials with the others, and report their number.
     #[default]
     Keep,
-    /// These trials are left out, and counted.
+    /// Leave these trials out, and report their number.
     LeaveOut,
 }
 

@@ -21,7 +21,8 @@ pub struct SignalSettings {
             long,
             value_name = "UNIT",
             display_order = 1,
-            help = "The unit at full scale, which the file calls 1: newtons, or m/s² with --quantity acceleration"
+            help = "Value for which full scale stands (1 in a signal, white in an image), in the \
+                    unit of --quantity, e.g. newtons for a force"
         )
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,7 +37,8 @@ pub struct SignalSettings {
             long = "pitch",
             value_name = "MM",
             display_order = 1,
-            help = "Distance of an image's pixels, mm [default: the one that the file states]"
+            help = "Distance between neighbouring pixels of an image, mm [default: the distance \
+                    that the file states]"
         )
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,7 +51,8 @@ pub struct SignalSettings {
         value_name = "NAME",
         value_parser = profile_names(),
         display_order = 1,
-        help = "The actuator whose range the file's frequencies are positions in [default: the format's own]"
+        help = "Actuator for which the file was made, for formats that state frequencies as \
+                positions in the range of an actuator [default: depends on the format]"
     ))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<String>,

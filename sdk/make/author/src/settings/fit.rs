@@ -33,7 +33,8 @@ settings! {
             default_value = "all",
             value_delimiter = ',',
             value_name = "ID,…",
-            help = "Models by short name or id, comma-separated, or `all`"
+            help = "Models to fit, by short name or id, comma-separated. `all` selects the models \
+                    that htex fits by default; some models are fitted only if you name them"
         ))]
         pub models: Option<Vec<String>>,
 
@@ -52,9 +53,9 @@ settings! {
             value_enum,
             default_value = "recording",
             display_order = 2,
-            help = "Level of a representation: the recording's RMS in the band, so that it plays as strong as the \
-                    recording, or the level of its own fit. Bands keeps energies, so it always has \
-                    the level of its fit"
+            help = "How strong a model plays. `recording`: as strong as the recording (its RMS in \
+                    the frequency band). `fitted`: as strong as the model's own fit. Bands always \
+                    plays at the level of its fit, because it stores energies"
         ))]
         pub level: Option<Level> = "level",
 
@@ -63,7 +64,8 @@ settings! {
             long = "keep-reference",
             action = clap::ArgAction::SetTrue,
             display_order = 4,
-            help = "Keep the recorded spectrum in the asset (788 bytes a condition, before compression)"
+            help = "Keep the recorded spectra in the asset. Each condition takes 788 bytes before \
+                    compression"
         ))]
         pub keep_reference: Option<bool>,
 
@@ -74,8 +76,9 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             value_name = "LINES",
             display_order = 7,
-            help = "Fit a grid of conditions to recordings in which speed and force change freely: `auto`, or lines as \
-                    speed=40,80,160 and force=0.3,0.6, each in a --grid of its own"
+            help = "Fit a grid of conditions to recordings in which speed and force change freely. \
+                    With `auto`, htex chooses the speeds and forces. To choose them yourself, give \
+                    --grid twice, e.g. --grid speed=40,80,160 --grid force=0.3,0.6"
         ))]
         pub grid: Option<Vec<String>> = "grid",
 

@@ -17,7 +17,7 @@ settings! {
         pub name: Option<String>,
 
         /// Who made the texture.
-        #[cfg_attr(feature = "clap", arg(long, help = "Who made it"))]
+        #[cfg_attr(feature = "clap", arg(long, help = "Who made the texture"))]
         pub author: Option<String>,
 
         /// SPDX licence expression.
@@ -38,7 +38,7 @@ settings! {
             visible_alias = "tags",
             value_delimiter = ',',
             value_name = "WORD,…",
-            help = "Tags, comma-separated; may be given several times"
+            help = "Search terms (tags), comma-separated; may be given several times"
         ))]
         pub tags: Option<Vec<String>>,
 
@@ -46,7 +46,7 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "TEXT",
-            help = "Where the recordings come from: a dataset, a laboratory, an address"
+            help = "Where the recordings come from, e.g. a dataset, a laboratory or a web address"
         ))]
         pub source: Option<String>,
 
@@ -61,7 +61,7 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "TEXT",
-            help = "What measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""
+            help = "Sensor that measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""
         ))]
         pub sensor: Option<String>,
 
@@ -78,8 +78,9 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             long,
             value_enum,
-            help = "Whether a finger or a tool slid over the surface: it decides how frequencies and level follow motions \
-                    that were not recorded, as far as neither recordings nor --law tell"
+            help = "Whether a finger or a tool slid over the surface. From this, htex assumes how \
+                    frequencies and level change at speeds and forces that were not recorded, \
+                    unless the recordings show it or --law states it"
         ))]
         pub contact: Option<Contact>,
 
@@ -88,8 +89,9 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "NAME=X,…",
-            help = "How frequencies and level follow motions that were not recorded, in place of what is measured or assumed: \
-                    exponents of frequency-speed, level-speed and level-force, e.g. frequency-speed=0,level-speed=0.4"
+            help = "Exponents by which frequencies and level change at speeds and forces that were \
+                    not recorded: frequency-speed, level-speed and level-force, e.g. \
+                    frequency-speed=0,level-speed=0.4. They replace measured or assumed exponents"
         ))]
         pub law: Option<GivenLaw>,
     }

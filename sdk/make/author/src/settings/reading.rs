@@ -25,7 +25,8 @@ settings! {
         #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "HZ",
-            help = "Sampling rate; needed where the file does not say (NPY, CSV without a time column)"
+            help = "Sample rate, Hz; needed if the file does not state it (NPY, CSV without a time \
+                    column)"
         ))]
         pub rate_hz: Option<f64> = "rate",
 
@@ -33,10 +34,14 @@ settings! {
         /// command's `--map`.
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
-            help = "Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g. \
-                    lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles: lateral, lateral_x, lateral_y (of other quantities: \
-                    signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name, number (#3) or path (/run1/fx), \
-                    in quotes if the name has an operator; the values are in N, the quantity's unit, mm/s, s, mm"
+            help = "What the columns or channels of a recording mean, and their scales: \
+                    ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, separated by commas, e.g. \
+                    lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles and their units after \
+                    scaling: lateral, lateral_x, lateral_y and normal (N), speed (mm/s), time (s), \
+                    x and y (mm). For a --quantity other than the lateral force, use signal, \
+                    signal_x, signal_y and signal_z instead of lateral (in the unit of the \
+                    quantity). A column is a name, a number (#3) or a path (/run1/fx). Put a name \
+                    that contains an operator in quotes"
         ))]
         pub map: Option<String> = "map",
 
@@ -48,8 +53,10 @@ settings! {
         )]
         #[cfg_attr(feature = "clap", arg(
             value_name = "FILE",
-            help = "The finger's motion from a tracker at its own rate: a file with the columns time and x, y (or speed), in times of the \
-                    recording's clock; a recording without times begins at 0 s. One for each recording, or one for all"
+            help = "Read the finger's motion from this file of a tracker, which may have its own \
+                    sample rate. The file has the columns time, x and y (or time and speed). Its \
+                    times are on the clock of the recording; a recording without times begins at 0 \
+                    s. Give one file for each recording, or one for all"
         ))]
         pub tracker: Option<Vec<PathBuf>> = "tracker",
 
@@ -58,7 +65,8 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
             requires = "tracker",
-            help = "Names and scales the tracker's columns, as --map does: time=stamp_ms:0.001,x=#2,y=#3"
+            help = "What the columns of the tracker's file mean, and their scales, written as for \
+                    --map, e.g. time=stamp_ms:0.001,x=#2,y=#3"
         ))]
         pub tracker_map: Option<String> = "tracker-map",
 
@@ -66,8 +74,8 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             default_value = "lateral-force",
-            help = "What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a \
-                    displacement in m"
+            help = "Quantity of the texture's signal: a force (N), an acceleration, e.g. of a tool \
+                    tip (m/s2), a velocity (m/s) or a displacement (m)"
         ))]
         pub quantity: Option<Quantity> = "quantity",
 
@@ -76,7 +84,8 @@ settings! {
         #[schemars(extend("not" = { "const": 0 }))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "UNITS",
-            help = "What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit"
+            help = "Value for which a full-scale sample stands in WAV, FLAC and NPY files, in the \
+                    unit of --quantity"
         ))]
         pub scale: Option<f64> = "scale",
 
@@ -84,16 +93,17 @@ settings! {
         #[schemars(description = "File of the setup's response, relative to the recipe.")]
         #[cfg_attr(feature = "clap", arg(
             value_name = "CSV",
-            help = "Response of the recording setup to divide out: CSV with columns frequency_hz, magnitude and, if known, phase_rad"
+            help = "Divide the spectra by this frequency response of the recording setup: CSV with \
+                    the columns frequency_hz, magnitude and, if known, phase_rad"
         ))]
         pub response: Option<PathBuf> = "frf",
 
         /// Start of the part to read, in seconds after the file's first sample.
-        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording from this time on, s"))]
+        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Read the recording from this time on, s"))]
         pub from_s: Option<f64> = "from",
 
         /// End of the part to read, in seconds after the file's first sample.
-        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording up to this time, s"))]
+        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Read the recording up to this time, s"))]
         pub to_s: Option<f64> = "to",
 
         /// Limit on the numbers kept in memory.
@@ -102,8 +112,8 @@ settings! {
             long = "most-numbers",
             value_name = "N",
             default_value = "40000000",
-            help = "Most numbers of a recording that are kept in memory, where each takes 8 to 40 bytes; columns that are not used \
-                    do not count"
+            help = "Maximum number of values of a recording to keep in memory. Each value takes 8 \
+                    to 40 bytes. Columns that are not used do not count"
         ))]
         pub most_values: Option<usize>,
 
@@ -111,8 +121,9 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             default_value = "auto",
-            help = "Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if \
-                    there are any that speak for at least half of the sliding, a sweep for 2 s at most"
+            help = "Which segments of the recording to use. `sweeps`: the middle of each complete \
+                    sweep. `windows`: evenly spaced windows. `auto`: sweeps if they represent at \
+                    least half of the sliding, otherwise windows; a sweep represents at most 2 s"
         ))]
         pub segments: Option<SegmentChoice> = "segments",
 
@@ -120,8 +131,10 @@ settings! {
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             default_value = "rms",
-            help = "How segments are averaged; `rms` reads noise at its level, `magnitude` is the mean that the paper is \
-                    taken to use and reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments"
+            help = "How to average the segments. `rms` averages the power, so that noise keeps its \
+                    level. `magnitude` averages the magnitudes, as the paper probably does; noise \
+                    is then 1.05 dB too low. `complex` averages the complex spectra, so that only \
+                    signals with the same phase in all segments remain"
         ))]
         pub averaging: Option<Averaging> = "averaging",
     }

@@ -1,5 +1,5 @@
 //! Measures how long a voice takes per sample, for an imported texture that follows a finger: cargo
-//! run --release -p htex-exchange --example live FILE.xml
+//! run --release -p htex-exchange --example voice_cost FILE.xml
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -10,55 +10,55 @@ from typing import Annotated, Literal, TypedDict
 class ReadingSettings(TypedDict, total=False):
     """How recordings are read."""
 
-    rate_hz: Annotated[float | None, "Sampling rate; needed where the file does not say (NPY, CSV without a time column)"]
-    map: Annotated[str | None, "Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g. lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles: lateral, lateral_x, lateral_y (of other quantities: signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name, number (#3) or path (/run1/fx), in quotes if the name has an operator; the values are in N, the quantity's unit, mm/s, s, mm"]
-    tracker: Annotated[str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None, "The finger's motion from a tracker at its own rate: a file with the columns time and x, y (or speed), in times of the recording's clock; a recording without times begins at 0 s. One for each recording, or one for all"]
-    tracker_map: Annotated[str | None, "Names and scales the tracker's columns, as `map` does: time=stamp_ms:0.001,x=#2,y=#3"]
-    quantity: Annotated[Literal["lateral_force", "normal_force", "acceleration", "velocity", "displacement"] | None, "What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a displacement in m [default: lateral_force]"]
-    scale: Annotated[float | None, "What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit"]
-    from_s: Annotated[float | None, "Reads the recording from this time on, s"]
-    to_s: Annotated[float | None, "Reads the recording up to this time, s"]
-    most_values: Annotated[int | None, "Most numbers of a recording that are kept in memory, where each takes 8 to 40 bytes; columns that are not used do not count [default: 40000000]"]
-    segments: Annotated[Literal["auto", "sweeps", "windows"] | None, "Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if there are any that speak for at least half of the sliding, a sweep for 2 s at most [default: auto]"]
-    averaging: Annotated[Literal["magnitude", "rms", "complex"] | None, "How segments are averaged; `rms` reads noise at its level, `magnitude` is the mean that the paper is taken to use and reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments [default: rms]"]
+    rate_hz: Annotated[float | None, "Sample rate, Hz; needed if the file does not state it (NPY, CSV without a time column)"]
+    map: Annotated[str | None, "What the columns or channels of a recording mean, and their scales: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, separated by commas, e.g. lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles and their units after scaling: lateral, lateral_x, lateral_y and normal (N), speed (mm/s), time (s), x and y (mm). For a `quantity` other than the lateral force, use signal, signal_x, signal_y and signal_z instead of lateral (in the unit of the quantity). A column is a name, a number (#3) or a path (/run1/fx). Put a name that contains an operator in quotes"]
+    tracker: Annotated[str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None, "Read the finger's motion from this file of a tracker, which may have its own sample rate. The file has the columns time, x and y (or time and speed). Its times are on the clock of the recording; a recording without times begins at 0 s. Give one file for each recording, or one for all"]
+    tracker_map: Annotated[str | None, "What the columns of the tracker's file mean, and their scales, written as for `map`, e.g. time=stamp_ms:0.001,x=#2,y=#3"]
+    quantity: Annotated[Literal["lateral_force", "normal_force", "acceleration", "velocity", "displacement"] | None, "Quantity of the texture's signal: a force (N), an acceleration, e.g. of a tool tip (m/s2), a velocity (m/s) or a displacement (m) [default: lateral_force]"]
+    scale: Annotated[float | None, "Value for which a full-scale sample stands in WAV, FLAC and NPY files, in the unit of `quantity`"]
+    from_s: Annotated[float | None, "Read the recording from this time on, s"]
+    to_s: Annotated[float | None, "Read the recording up to this time, s"]
+    most_values: Annotated[int | None, "Maximum number of values of a recording to keep in memory. Each value takes 8 to 40 bytes. Columns that are not used do not count [default: 40000000]"]
+    segments: Annotated[Literal["auto", "sweeps", "windows"] | None, "Which segments of the recording to use. `sweeps`: the middle of each complete sweep. `windows`: evenly spaced windows. `auto`: sweeps if they represent at least half of the sliding, otherwise windows; a sweep represents at most 2 s [default: auto]"]
+    averaging: Annotated[Literal["magnitude", "rms", "complex"] | None, "How to average the segments. `rms` averages the power, so that noise keeps its level. `magnitude` averages the magnitudes, as the paper probably does; noise is then 1.05 dB too low. `complex` averages the complex spectra, so that only signals with the same phase in all segments remain [default: rms]"]
 
 
 class FitSettings(TypedDict, total=False):
     """How models are fitted."""
 
-    models: Annotated[str | Sequence[str] | None, "Models by short name or id, comma-separated, or `all` [default: all]"]
-    level: Annotated[Literal["fitted", "recording"] | None, "Level of a representation: the recording's RMS in the band, so that it plays as strong as the recording, or the level of its own fit. Bands keeps energies, so it always has the level of its fit [default: recording]"]
-    keep_reference: Annotated[bool | None, "Keep the recorded spectrum in the asset (788 bytes a condition, before compression)"]
+    models: Annotated[str | Sequence[str] | None, "Models to fit, by short name or id, comma-separated. `all` selects the models that htex fits by default; some models are fitted only if you name them [default: all]"]
+    level: Annotated[Literal["fitted", "recording"] | None, "How strong a model plays. `recording`: as strong as the recording (its RMS in the frequency band). `fitted`: as strong as the model's own fit. Bands always plays at the level of its fit, because it stores energies [default: recording]"]
+    keep_reference: Annotated[bool | None, "Keep the recorded spectra in the asset. Each condition takes 788 bytes before compression"]
 
 
 class Metadata(TypedDict, total=False):
     """What a texture is, who made it, and how it was recorded."""
 
     name: Annotated[str | None, "Name of the texture"]
-    author: Annotated[str | None, "Who made it"]
+    author: Annotated[str | None, "Who made the texture"]
     license: Annotated[str | None, "Licence of the asset, as an SPDX expression, e.g. CC-BY-4.0"]
     description: Annotated[str | None, "What the surface is, in words"]
-    tags: Annotated[str | Sequence[str] | None, "Tags, comma-separated; may be given several times"]
-    source: Annotated[str | None, "Where the recordings come from: a dataset, a laboratory, an address"]
+    tags: Annotated[str | Sequence[str] | None, "Search terms (tags), comma-separated; may be given several times"]
+    source: Annotated[str | None, "Where the recordings come from, e.g. a dataset, a laboratory or a web address"]
     doi: Annotated[str | None, "DOI of the recordings or of the paper that describes them, e.g. 10.5281/zenodo.1234567"]
-    sensor: Annotated[str | None, "What measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""]
+    sensor: Annotated[str | None, "Sensor that measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""]
     finger: Annotated[str | None, "What slid over the surface, e.g. \"bare index finger\""]
-    contact: Annotated[Literal["finger", "tool", "unknown"] | None, "Whether a finger or a tool slid over the surface: it decides how frequencies and level follow motions that were not recorded, as far as neither recordings nor `law` tell"]
-    law: Annotated[Mapping[str, float] | None, "How frequencies and level follow motions that were not recorded, in place of what is measured or assumed: exponents of frequency-speed, level-speed and level-force, e.g. frequency-speed=0,level-speed=0.4"]
+    contact: Annotated[Literal["finger", "tool", "unknown"] | None, "Whether a finger or a tool slid over the surface. From this, htex assumes how frequencies and level change at speeds and forces that were not recorded, unless the recordings show it or `law` states it"]
+    law: Annotated[Mapping[str, float] | None, "Exponents by which frequencies and level change at speeds and forces that were not recorded: frequency-speed, level-speed and level-force, e.g. frequency-speed=0,level-speed=0.4. They replace measured or assumed exponents"]
 
 
 class ResponseSettings(TypedDict, total=False):
     """How a response is measured."""
 
-    estimator: Annotated[Literal["h1", "h2", "hv"] | None, "h1: for noise in the output; h2: for noise in the input; hv: for noise in both (total least squares) [default: h1]"]
-    window_s: Annotated[float | None, "Length of a window, s: the part of the recording that is transformed at a time. The response has a value every 1/length Hz; lengths that are multiples of 0.2 s include the 5 Hz grid of texture spectra [default: 1]"]
-    low_hz: Annotated[float | None, "Lowest frequency, Hz [default: 20]"]
-    high_hz: Annotated[float | None, "Highest frequency, Hz; half of the sample rate if that is lower [default: 1000]"]
-    input_limit: Annotated[float | None, "Magnitude of the input at which its sensor or amplifier is overloaded. Without it, four equal samples in a row at the highest or lowest value count as an overload"]
-    output_limit: Annotated[float | None, "Magnitude of the output at which its sensor or amplifier is overloaded. Without it, the same rule applies as for the input"]
-    continuous: Annotated[bool | None, "The input is a continuous drive, such as noise or a sweep: use Hann windows with half overlap"]
-    pre_trigger_s: Annotated[float | None, "Hits: time before the trigger that belongs to the window, s; the mean of that part is removed [default: 0.02]"]
-    trigger: Annotated[float | None, "Hits: level at which a hit starts, relative to the largest input of the recording [default: 0.1]"]
-    double: Annotated[float | None, "Hits: size of a second contact that makes a double hit, relative to the hit [default: 0.1]"]
-    force_window_s: Annotated[float | None, "Hits: time after the trigger, s, from which on the input is faded to zero; this removes noise between hits"]
-    exponential_s: Annotated[float | None, "Hits: time constant of an exponential window on both channels, s, for responses that outlast the window. The window raises their damping by the inverse of this time constant"]
+    estimator: Annotated[Literal["h1", "h2", "hv"] | None, "Estimator of the response: h1 if the output has noise, h2 if the input has noise, hv if both have noise (total least squares) [default: h1]"]
+    window_s: Annotated[float | None, "Length of a window, s. htex transforms the recording in windows of this length, so that the response has a value every 1/length Hz. If the length is a multiple of 0.2 s, these frequencies include the frequencies of texture spectra, which are 5 Hz apart [default: 1]"]
+    low_hz: Annotated[float | None, "Lowest frequency of the response, Hz [default: 20]"]
+    high_hz: Annotated[float | None, "Highest frequency of the response, Hz. If half of the sample rate is lower, the response ends at half of the sample rate [default: 1000]"]
+    input_limit: Annotated[float | None, "Count the input as overloaded where its magnitude reaches this value. By default, four equal samples in a row at the highest or lowest value count as an overload"]
+    output_limit: Annotated[float | None, "Count the output as overloaded where its magnitude reaches this value. By default, the same rule applies as for the input"]
+    continuous: Annotated[bool | None, "Measure with a continuous drive, such as noise or a sweep, instead of the hits of a hammer. htex then uses Hann windows, each of which overlaps the previous one by half"]
+    pre_trigger_s: Annotated[float | None, "For hits: begin each window this time before the trigger, s. htex subtracts the mean of this part from the window [default: 0.02]"]
+    trigger: Annotated[float | None, "For hits: level at which a hit starts, as a fraction of the largest input of the recording [default: 0.1]"]
+    double: Annotated[float | None, "For hits: discard a hit as a double hit if its window has a second contact of at least this size, as a fraction of the hit [default: 0.1]"]
+    force_window_s: Annotated[float | None, "For hits: fade the input to zero from this time after the trigger on, s. This removes the noise between hits"]
+    exponential_s: Annotated[float | None, "For hits: multiply both channels by an exponential window with this time constant, s, if responses last longer than the window. This raises the measured damping by the inverse of the time constant"]

@@ -24,11 +24,11 @@ pub(crate) struct RecordingArgs {
     #[command(flatten)]
     pub(crate) settings: ReadingSettings,
 
-    /// Scanning speed of the recordings, mm/s. If a recording states a speed, this one replaces it
+    /// Scanning speed of the recordings, mm/s. It replaces the speed that a recording states
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force of the recordings, N. If a recording states a force, this one replaces it
+    /// Normal force of the recordings, N. It replaces the force that a recording states
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 

@@ -74,9 +74,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     lifted: f64,
 
-    /// Write the true spectra of the surface to this file, for --motion free: JSON with the
-    /// magnitudes over the range of speeds, and the rule by which the magnitudes depend on the
-    /// force
+    /// Write the true spectra of the surface to this JSON file (only with --motion free). The file
+    /// has the magnitudes over the range of speeds, and the rule by which they depend on the force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
 }

@@ -7,8 +7,9 @@
 //! summarised by Gescheider & Verrillo 1979). Above 250 Hz, it rises by 9 dB per octave (Verrillo
 //! 1966, *Psychonomic Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak
 //! (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). The
-//! thresholds of different people differ by some 10 dB. A smaller contact raises the Pacinian part
-//! by 3 dB for each halving of its area.
+//! thresholds of different people differ by some 10 dB. With a smaller contact, the part of the
+//! threshold that the Pacinian channel determines is higher: by 3 dB each time the area of the
+//! contact is halved.
 //!
 //! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
 //! The smallest threshold and the values of [`Skin`] are commonly quoted from the papers, to one or

@@ -30,9 +30,10 @@ impl MixedAsset<'_> {
 ///
 /// The result has the conditions of both textures. If only one texture has a condition, the other
 /// contributes the parameters that a player would interpolate there. The law comes from the texture
-/// with the larger weight, or from `a` if the weights are equal. That texture may also store
-/// triangles of conditions, in which a player interpolates. The result keeps these triangles if the
-/// texture has exactly the conditions of the result. Otherwise it leaves them out with a warning.
+/// with the larger weight, or from `a` if the weights are equal. If the texture that
+/// gives the law stores triangles of conditions (in which a player interpolates), the result keeps
+/// them, provided that this texture has exactly the conditions of the result. Otherwise the result
+/// has no stored triangles, and there is a warning if a texture had some.
 ///
 /// # Errors
 /// When the weight is out of range, the textures have no model in common, their quantity or band

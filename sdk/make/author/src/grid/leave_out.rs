@@ -1,5 +1,5 @@
-//! Held-out error of a model: each block of time is compared with what a player plays from a fit to
-//! the rest of the recording.
+//! Held-out error of a model. For each block of time, the model is fitted to the other blocks of the
+//! recording, and what a player would then play is compared with this block.
 
 use htex_dsp::bands::rms;
 use htex_format::{LeftOut, Measure, Measures};

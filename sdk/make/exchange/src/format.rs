@@ -53,8 +53,10 @@ pub enum Reads {
     Map,
 }
 
-type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
-type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
+/// The function that reads a signal whose frequencies are positions in an actuator's range.
+pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
+/// The function that reads a signal.
+pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
 type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 
 /// How assets are exported to a format.

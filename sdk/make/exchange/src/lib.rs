@@ -66,7 +66,7 @@ pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
 #[cfg(feature = "export")]
 pub use export::{ActuatorPlay, Export, ExportedFile, export, export_scene};
-pub use format::{Format, Naming, RATE_HZ, Reads, Sampling, Signal};
+pub use format::{Format, Naming, RATE_HZ, ReadPositions, ReadSignal, Reads, Sampling, Signal};
 #[cfg(feature = "export")]
 pub use format::{WriteSignal, Writes};
 pub use formats::{FORMATS, imported, imported_signals};

@@ -27,8 +27,10 @@ use control::Controls;
 
 /// Longest allowed continuous event, seconds (documentation of
 /// `CHHapticEvent.EventType.hapticContinuous`).
+#[cfg(feature = "export")]
 pub(crate) const LONGEST_EVENT_S: f64 = 30.0;
 /// Largest number of control points that are written into one curve.
+#[cfg(feature = "export")]
 pub(crate) const POINTS_OF_A_CURVE: usize = 16;
 
 /// An `.ahap` file.

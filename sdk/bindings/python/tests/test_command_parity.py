@@ -98,7 +98,7 @@ def test_a_take_is_read_as_the_json_beside_it_says(place: pathlib.Path, tmp_path
 def test_keywords_are_shown_and_others_refused(place: pathlib.Path) -> None:
     shown = inspect.signature(htex.process).parameters
     assert list(shown)[0] == "recording" and {"rate_hz", "strict", "averaging"} <= set(shown)
-    assert "Sampling rate" in (htex.process.__doc__ or "")
+    assert "Sample rate" in (htex.process.__doc__ or "")
     with pytest.raises(TypeError, match="unexpected keyword argument 'rate'"):
         htex.process(place / "rec.csv", rate=1e4)  # type: ignore[call-arg]
     for function, arguments in [

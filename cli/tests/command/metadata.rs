@@ -2,11 +2,12 @@
 //! changes.
 
 use std::collections::BTreeMap;
-use std::io::Read;
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
 use crate::common::Place;
 use serde_json::Value;
+use zip::write::SimpleFileOptions;
 
 const METADATA: [&str; 16] = [
     "--name",
@@ -27,16 +28,29 @@ const METADATA: [&str; 16] = [
     "six-axis force sensor",
 ];
 
-/// The entries of an asset, unpacked.
+/// The entries of an asset, unpacked by the package `zip`, which also writes the same bytes.
 fn entries(file: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut archive = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+    let bytes = std::fs::read(file).unwrap();
+    let mut archive = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
+    let mut again = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let mut entries = BTreeMap::new();
     for i in 0..archive.len() {
         let mut entry = archive.by_index(i).unwrap();
-        let mut bytes = Vec::new();
-        entry.read_to_end(&mut bytes).unwrap();
-        entries.insert(entry.name().unwrap().into_owned(), bytes);
+        let mut unpacked = Vec::new();
+        entry.read_to_end(&mut unpacked).unwrap();
+        let name = entry.name().unwrap().into_owned();
+        let deflated = entry.compression() == zip::CompressionMethod::Deflated;
+        let options = SimpleFileOptions::default()
+            .last_modified_time(zip::DateTime::default())
+            .system(zip::System::Unix)
+            .unix_permissions(0o644)
+            .compression_method(entry.compression())
+            .compression_level(deflated.then_some(9));
+        again.start_file(name.clone(), options).unwrap();
+        again.write_all(&unpacked).unwrap();
+        entries.insert(name, unpacked);
     }
+    assert!(again.finish().unwrap().into_inner() == bytes, "{}", file.display());
     entries
 }
 

@@ -11,7 +11,7 @@ use crate::failure::{Exit, Failure, Result};
 use crate::invocation;
 use crate::output::{print, print_json, show};
 
-/// How checks are run and reported.
+/// Options of the commands that check models and devices.
 #[derive(Args)]
 pub(crate) struct CheckArgs {
     /// Print JSON
@@ -22,8 +22,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, default_value_t = 60.0, value_name = "S")]
     timeout: f64,
 
-    /// Run only the check NAME, and do not start a separate process for it, so that a debugger can
-    /// follow it
+    /// Run only the check NAME, in this process instead of a separate one, so that a debugger can
+    /// follow the check
     #[arg(long, value_name = "NAME", conflicts_with = "timeout")]
     pub(crate) reproduce: Option<String>,
 }

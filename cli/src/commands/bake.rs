@@ -19,13 +19,14 @@ const MOST: i64 = BakeLimits::MOST as i64;
 
 /// Write a texture for microcontrollers
 ///
-/// Writes a block of bytes. On the microcontroller, a small player renders samples from the block
-/// (see docs/microcontroller.md).
+/// Writes a block of bytes, from which a small player on the microcontroller renders samples (see
+/// docs/microcontroller.md).
 ///
 /// The block stores the texture at the conditions of a grid. A condition is a pair of a speed and a
-/// force. Between conditions, the player interpolates. The command prints the size of the block,
-/// and its nine-band error: how far its spectrum is from the asset's, over nine frequency bands. It
-/// prints this error at the conditions and midway between them.
+/// force. Between the conditions, the player interpolates. The command prints the size of the block
+/// and two nine-band errors: one at the conditions, and one midway between the conditions. The
+/// nine-band error is the largest difference between the spectra of the block and of the asset in
+/// any of nine frequency bands.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
@@ -37,13 +38,13 @@ pub(crate) struct Bake {
     model: Option<String>,
 
     /// Store the texture at this condition, e.g. speed=80,force=0.4 (mm/s, N). May be given several
-    /// times; the conditions must then be all combinations of their speeds and forces [default: the
-    /// asset's first condition, or its strongest condition if the first is silent]
+    /// times; then give all combinations of the speeds and the forces [default: the asset's first
+    /// condition, or its strongest condition if the first is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
     /// Store the texture at all conditions of this grid, e.g. speed=40:160:3,force=0.2:0.6:3 (mm/s,
-    /// N). Speed and force are each FIRST:LAST:COUNT or one number
+    /// N). Give the speed and the force as FIRST:LAST:COUNT or as one number
     #[arg(long, value_name = "GRID")]
     grid: Option<String>,
 
@@ -52,21 +53,22 @@ pub(crate) struct Bake {
     rate: f64,
 
     /// Insert conditions into the grid until the nine-band error midway between neighbouring
-    /// conditions is at most this, dB, or until the block has 64 conditions
+    /// conditions is at most this value, dB. htex stops before the block has more than 64
+    /// conditions
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
-    /// Limit the number of coefficients in a filter, 65 to 641. A shorter filter takes less time
-    /// per sample, but can be less accurate [default: 641]
+    /// Maximum number of coefficients of a filter, 65 to 641. A filter with fewer coefficients
+    /// takes less time per sample, but can be less accurate [default: 641]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). An array file
-    /// states licence and author in comments. With .bin, the command writes licence and author to
-    /// FILE.license
+    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). A C or Rust array
+    /// states licence and author in comments. For a .bin file, the command writes licence and
+    /// author to FILE.license
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 

@@ -24,10 +24,10 @@ use crate::recordings::RecordingArgs;
 /// Measures the difference between a recording and each model of an asset, or between two
 /// recordings.
 ///
-/// htex evaluates the models at the recording's speed and force if both are known. Otherwise it
-/// evaluates them at the asset's first condition (a speed and a force), or at the strongest
-/// condition if the first is silent. The error `felt` counts only what a fingertip can feel: in
-/// third octaves, it compares the parts of the two spectra that are above the fingertip's detection
+/// htex evaluates the models at the recording's speed and force if both are known. Otherwise htex
+/// evaluates the models at the asset's first condition (a pair of a speed and a force), or at the
+/// strongest condition if the first is silent. The error `felt` counts only what a fingertip can
+/// feel: it compares, in third octaves, how far each spectrum is above the fingertip's detection
 /// threshold.
 #[derive(Args)]
 pub(crate) struct Compare {

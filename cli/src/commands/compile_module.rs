@@ -2,11 +2,11 @@ use clap::Args;
 
 use crate::failure::{Exit, Failure, Result};
 
-/// Compile the WASM module on standard input for the process that started this one (internal).
+/// Compile the WASM module on standard input for the process that started this command (internal).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct CompileModule {
-    /// The limits, in the form in which that process passes them
+    /// The limits of the compilation, encoded by the process that started this command
     arguments: Vec<String>,
 }
 

@@ -41,13 +41,13 @@ const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: So
 /// WAV files, and writes a report.
 ///
 /// For each surface, the command writes to DIR the simulated recording (NAME.csv), the asset
-/// (NAME.htex), and 5 s of the signal of each model (NAME-MODEL.wav). It also writes report.html,
-/// spectra.svg and rig.csv. spectra.svg shows the spectra of all recordings, and of their models
-/// Bands and AR. rig.csv is the frequency response of the simulated rig, by which htex divides the
-/// spectra of the recordings.
+/// (NAME.htex), and 5 s of the signal of each model (NAME-MODEL.wav). For all surfaces together,
+/// the command writes report.html, spectra.svg and rig.csv. spectra.svg shows the spectra of the
+/// recordings, and the spectra of the models Bands and AR. rig.csv is the frequency response of the
+/// simulated rig; htex divides the spectra of the recordings by this response.
 ///
-/// The samples in the WAV files are forces in newtons, as 32-bit floats. As sound, they are quiet.
-/// To listen, raise their level in an audio editor.
+/// The samples in the WAV files are forces in newtons, as 32-bit floats, so the files sound very
+/// quiet. To listen to a file, raise its level in an audio editor.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist
@@ -57,7 +57,7 @@ pub(crate) struct Demo {
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
-    /// Print JSON instead of the table
+    /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
 }

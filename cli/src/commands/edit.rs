@@ -17,15 +17,15 @@ use crate::outputs::check_outputs;
 /// Change an asset's metadata
 ///
 /// The command changes only the metadata that you give. An empty text removes an entry, e.g.
-/// --author "". --tag replaces all tags. Parameters, recorded spectra and embedded models with
-/// their signatures stay the same, byte for byte.
+/// --author "". The flag --tag replaces all tags of the asset. Parameters, recorded spectra and
+/// embedded models with their signatures stay the same, byte for byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
-    /// Further assets. The command refuses them, and says what to do instead
+    /// Further assets. The command refuses further assets, and says what to do instead
     #[arg(hide = true)]
     more: Vec<PathBuf>,
 

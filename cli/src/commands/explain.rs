@@ -22,8 +22,8 @@ pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
 
 /// Explain the code of a finding
 ///
-/// A finding is a remark of htex on a file, e.g. an error or a warning of `htex validate`. The
-/// command prints what the finding means and what to do about it.
+/// A finding is an error, a warning or a note about a file, e.g. from `htex validate`. The command
+/// prints what the finding means and what to do about it.
 #[derive(Args)]
 pub(crate) struct Explain {
     /// The code, as `htex validate` prints it. Without a code, the command lists all codes

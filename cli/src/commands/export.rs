@@ -23,20 +23,20 @@ use crate::scene_sound::{Scene, is_scene};
 /// Write a texture in another haptic format
 ///
 /// Writes a texture or a whole scene as a file that phones, game controllers and game engines can
-/// play. The file plays a texture as it feels at one speed and force, or along a stroke of the
+/// play. The file contains a texture as it feels at one speed and force, or along a stroke of the
 /// finger.
 ///
 /// The profile of an actuator describes which part of the spectrum the actuator can reproduce. The
-/// command prints how far the file is from the asset. To measure this, it reads the written file
-/// again, simulates how the actuator plays it, and compares the result with the asset's own
-/// samples.
+/// command prints the difference between the file and the asset. To measure this difference, the
+/// command reads the written file again, simulates how the actuator plays the file, and compares
+/// the result with the asset's own samples.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset or the scene to export. For a scene, the motion and the models come from the scene
+    /// The asset or the scene to export. A scene also states the motion and the models
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
-    /// The format to write; `htex formats` describes them
+    /// The format to write; `htex formats` describes all formats
     #[arg(long, value_name = "FORMAT", value_parser = exported())]
     to: String,
 
@@ -47,8 +47,8 @@ pub(crate) struct Export {
     player: PlayerArgs,
 
     /// The file to write. With --to android, the command writes Kotlin if the name ends in .kt, and
-    /// otherwise JSON. With --to gltf, it writes JSON if the name ends in .gltf, and otherwise the
-    /// binary form (.glb)
+    /// otherwise JSON. With --to gltf, the command writes JSON if the name ends in .gltf, and
+    /// otherwise the binary form (.glb)
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 
@@ -64,8 +64,7 @@ struct Settings {
     choice: ChoiceArgs,
 
     /// Export the texture along this stroke of the finger, instead of at one speed and force. The
-    /// CSV has columns for time, speed and force (t_s, speed_mm_s, force_n), or for time, position
-    /// and force
+    /// CSV has the columns t_s, speed_mm_s and force_n, or a position instead of the speed
     #[arg(long, value_name = "CSV", value_parser = located::RECORDING, conflicts_with_all = ["speed", "force", "seconds"])]
     stroke: Option<PathBuf>,
 

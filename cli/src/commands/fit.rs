@@ -21,11 +21,11 @@ use crate::report::{ReportSource, measures, shares};
 
 /// Fit models to recordings of one texture
 ///
-/// Writes an asset (.htex) with the models and the measured error of each.
+/// Writes an asset (.htex) that contains the models and the measured error of each model.
 ///
-/// A condition of a texture is a pair of a speed and a force. If the speeds and the forces of
-/// several recordings differ by less than 5 %, htex averages these recordings, and they become one
-/// condition. Other recordings become further conditions.
+/// A condition of a texture is a pair of a speed and a force. If several recordings have the same
+/// speed and the same force within 5 %, htex averages these recordings to one condition. Every
+/// other recording becomes a condition of its own.
 #[derive(Args)]
 pub(crate) struct Fit {
     #[arg(help = format!("Recordings of one texture: {}", format_names()))]
@@ -53,9 +53,9 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "FILE", requires = "embed_plugin", display_order = 6)]
     sign_with: Option<PathBuf>,
 
-    /// Draw the grid that --grid fits, as an SVG picture over speed and force. It shows the steady
-    /// parts of the recordings, the fitted conditions with their repeatability, and the mesh
-    /// between the conditions
+    /// Draw the grid that --grid fits, as an SVG picture over speed and force. The picture shows
+    /// the parts of the recordings with steady motion, the fitted conditions with their
+    /// repeatability, and the mesh between the conditions
     #[arg(long, value_name = "SVG", requires = "grid", display_order = 8)]
     grid_svg: Option<PathBuf>,
 

@@ -20,19 +20,19 @@ const LARGE_STEP_DB: f64 = 4.0;
 
 /// Find a participant's preferred gain
 ///
-/// The participant touches the display and adjusts how strong the texture is. htex stores the gain,
-/// and `htex play --person` uses it.
+/// The participant touches the display and adjusts how strong the texture is. htex stores this
+/// gain, and `htex play --person` plays with the stored gain.
 ///
-/// The texture plays without end. Type `+` or `-` and Enter to make it 1 dB stronger or weaker.
-/// `++` or `--` and Enter change it by 4 dB. Press only Enter to accept the gain, or Ctrl-C to
-/// leave without storing one. By default, the texture starts 20 dB below the device's limit, and
-/// becomes stronger only when the participant asks for it. (In the paper, participants start at the
-/// limit.)
+/// The texture plays until you accept a gain. Type `+` or `-` and Enter to make the texture 1 dB
+/// stronger or weaker, or `++` or `--` and Enter to change its level by 4 dB. Press only Enter to
+/// accept the gain, or Ctrl-C to leave without storing a gain. By default, the texture starts 20 dB
+/// below the device's limit, and becomes stronger only when you type `+`. (In the paper,
+/// participants start at the limit.)
 ///
 /// htex stores one gain for each combination of a person, a texture, and a device with its profile.
 /// All models of a texture share this gain. htex identifies a texture by its name and author, so
-/// the gain stays valid if you fit the texture again. In the paper, participants found the gain
-/// with the model AR (`--model ar`), and all models were then played with this gain.
+/// the gain stays valid if you fit the texture again. In the paper, participants found their gain
+/// with the model AR (`--model ar`), and felt all models with this gain.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
@@ -42,12 +42,12 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "NAME")]
     person: String,
 
-    /// Largest voltage of the drive at the start, V [default: a tenth of the device's limit]
+    /// Peak voltage at which the texture starts, V [default: a tenth of the device's limit]
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
-    /// Store the gain under this name instead of the texture's own, e.g. because another texture
-    /// has the same name and author
+    /// Store the gain under this name instead of the texture's name and author, e.g. because
+    /// another texture has the same name and author
     #[arg(long, value_name = "NAME")]
     texture: Option<String>,
 

@@ -4,7 +4,8 @@ use htex_device::guardian::hold;
 use crate::devices::DeviceArgs;
 use crate::failure::{Exit, Result};
 
-/// Hold a device's output for the process that started this one (internal; `htex play` starts it).
+/// Open a device for the process that started this command, and set its output to zero when that
+/// process ends (internal; `htex play` starts this command).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct Guard {

@@ -18,17 +18,17 @@ use crate::plugins::PluginArgs;
 
 /// Read another haptic format as a texture
 ///
-/// A model file of the Penn Haptic Texture Toolkit states its units, speeds and forces, so it
-/// becomes a texture directly. If a material in a glTF file embeds a `.htex` asset, htex takes this
-/// asset unchanged.
+/// A model file of the Penn Haptic Texture Toolkit states its units, speeds and forces, so htex
+/// converts the file without further information. If a material in a glTF file embeds a `.htex`
+/// asset, htex extracts this asset unchanged.
 ///
 /// A file of any other format is a signal or an image that does not state its units, speed and
-/// force. Give the value of its full scale (--full-scale), and the speed and the force at which the
-/// file is felt (--speed, --force). htex fits models to a signal as to a recording. An image
-/// becomes a friction map.
+/// force. Give the physical value of its full scale (--full-scale), and the speed and the force at
+/// which the texture is to be felt (--speed, --force). htex fits models to a signal as to a
+/// recording, and turns an image into a friction map.
 ///
-/// Unless you give --license and --author, htex takes licence and author from the file, or from
-/// FILE.license next to the file. `htex formats` lists what each format keeps and loses.
+/// Unless you give --license and --author, htex reads licence and author from the file, or from
+/// FILE.license next to the file. `htex formats` lists which parts of a texture each format keeps.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -63,11 +63,11 @@ struct Settings {
     #[arg(long, value_enum, default_value_t, display_order = 1)]
     quantity: Quantity,
 
-    /// Speed of the finger at which the file is felt, mm/s
+    /// Speed of the finger at which the texture is to be felt, mm/s
     #[arg(long, value_name = "MM_S", display_order = 1)]
     speed: Option<f64>,
 
-    /// Normal force of the finger at which the file is felt, N
+    /// Normal force of the finger at which the texture is to be felt, N
     #[arg(long, value_name = "N", display_order = 1)]
     force: Option<f64>,
 

@@ -9,21 +9,21 @@ use crate::failure::{Result, for_file};
 use crate::located;
 use crate::output::show;
 
-/// Show what an asset holds, and its errors
+/// Show the contents and the errors of an asset
 ///
-/// Prints the asset's metadata, and a table with a row for each model and condition (a speed and a
-/// force). `level` is the RMS in the asset's unit, and `corr.` is the Pearson correlation with the
-/// recorded spectrum. Three columns show errors of the model's spectrum: `bands/dB` over nine
-/// overlapping bands, `third-oct/dB` over third octaves, and `log-sp/dB` over all frequencies. The
-/// columns `played…` show the same errors for samples that the model rendered. `bytes` is the size
-/// of the model's parameters.
+/// Prints the asset's metadata, and a table with a row for each model at each condition (a pair of
+/// a speed and a force). `level` is the RMS in the asset's unit. The other columns compare the
+/// model's spectrum with the recorded spectrum: `corr.` is the Pearson correlation, `bands/dB` the
+/// error over nine overlapping bands, `third-oct/dB` the error over third octaves, and `log-sp/dB`
+/// the error over all frequencies. The columns `played…` show the same errors for samples that the
+/// model rendered. `bytes` is the size of the model's parameters.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
-    /// Further assets. The command refuses them, and says what to do instead
+    /// Further assets. The command refuses further assets, and says what to do instead
     #[arg(hide = true)]
     more: Vec<PathBuf>,
 

@@ -24,31 +24,33 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
 ///
-/// Fits the recordings that the recipe names, and imports files as `htex import` does. Writes the
-/// library (DIR/NAME.htexlib), the single textures (in DIR/textures), a report
-/// (DIR/build-report.json) and a catalogue (DIR/index.html). If the build fails, the report
-/// contains the error. The recordings and other files that a recipe names may be URIs.
+/// Fits the recordings that the recipe names, and imports files of other formats that the recipe
+/// names, as `htex import` does. Writes the library (DIR/NAME.htexlib), each texture as a file (in
+/// DIR/textures), a report (DIR/build-report.json) and a catalogue (DIR/index.html). If the build
+/// fails, the report contains the error. A recipe may name its recordings and other files by URI.
 ///
-/// Finished fits stay in DIR/.htex-build. If a build was killed, run the same command again, and it
-/// continues with these fits. A repeated build fits only what has changed.
+/// Finished fits stay in DIR/.htex-build. If a build was killed, run the same command again: the
+/// new build continues from these fits. A repeated build fits only the textures that have changed.
 ///
-/// Exit status: 0 if every texture was made; 1 if none was made or the build failed; 2 for wrong
-/// usage; 3 if some textures were made and others left out.
+/// Exit status: 0 if every texture was made; 1 if no texture was made or the build failed; 2 for
+/// wrong usage; 3 if some textures were made and others were left out.
 ///
-/// htex leaves out a texture that does not meet a gate, which is a requirement in the recipe, e.g.
-/// a largest error. With --keep-going, it also leaves out a texture that cannot be made.
+/// A recipe may contain gates, i.e. requirements such as a maximum error. htex leaves out a texture
+/// that does not meet a gate. With --keep-going, htex also leaves out a texture that cannot be
+/// made.
 #[derive(Args)]
 pub(crate) struct Build {
     /// Path or URI of the recipe, e.g. library.toml. `htex schema recipe` prints its JSON Schema
     recipe: Anywhere,
 
     /// Folder for the results, or a URI (s3://, gs://, az://). For a URI, htex makes the results in
-    /// the folder --work, and uploads them when they are complete
+    /// the folder --work, and uploads the complete results
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 
-    /// Local folder in which htex makes the results if --output is a URI. Keep this folder, because
-    /// the next build continues from its contents [default: a folder in the user's cache]
+    /// Local folder in which htex makes the results if --output is a URI. Do not delete this
+    /// folder, because the next build continues from its contents [default: a folder in the user's
+    /// cache]
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
 
@@ -56,34 +58,33 @@ pub(crate) struct Build {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
 
-    /// Leave out a texture that cannot be made, and continue with the others
+    /// Leave out a texture that cannot be made, and continue with the other textures
     #[arg(long)]
     keep_going: bool,
 
-    /// Exit with 1 and change nothing if the library would lose textures, e.g. because a folder of
-    /// recordings was moved
+    /// Change nothing and exit with status 1 if textures of the existing library are missing from
+    /// the new one, e.g. because a folder of recordings was moved
     #[arg(long)]
     no_removals: bool,
 
-    /// Fit nothing: check the recipe with its files, plugins, options and gates, and print what a
-    /// build would fit and why
+    /// Check the recipe with its files, plugins, options and gates, and print what a build would
+    /// fit and why, but fit nothing
     #[arg(long)]
     dry_run: bool,
 
-    /// Make the model in this plugin available to the recipe; may be given several times. The
-    /// plugin is a WASM module, which runs in a sandbox, or a native library, which runs with all
-    /// your rights, so load only a library that you trust. A recipe itself can name only WASM
-    /// modules
+    /// Make the model in this plugin available to the recipe; may be given several times. A plugin
+    /// that is a WASM module runs in a sandbox. A native library runs with all your rights, so load
+    /// only a library that you trust. A recipe itself can name only WASM modules
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// Remove unused fits at once. By default, they stay for 30 days: if you undo a change of a
-    /// setting in this time, htex need not fit again
+    /// Remove unused fits at once. By default, unused fits stay for 30 days: if you undo a change
+    /// of a setting in this time, htex uses the earlier fits again
     #[arg(long)]
     prune: bool,
 
-    /// Let the catalogue play the textures themselves instead of short sounds. DIR is the folder of
-    /// the browser package, which htex copies into the catalogue
+    /// Make a catalogue that plays the textures themselves instead of short recorded sounds. DIR is
+    /// the folder of the browser package, which htex copies into the catalogue
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 

@@ -16,11 +16,11 @@ use crate::recordings::parse_condition;
 
 /// Make a texture from parameters
 ///
-/// The asset states that it was made by hand. `htex plugin info MODEL` lists a model's parameters
-/// with their units and ranges.
+/// The asset states that its parameters were set by hand. `htex plugin info MODEL` lists a model's
+/// parameters with their units and ranges.
 #[derive(Args)]
 pub(crate) struct Make {
-    /// The model: short name or id
+    /// The model, by short name or id
     #[arg(long, value_name = "ID")]
     model: String,
 
@@ -33,8 +33,8 @@ pub(crate) struct Make {
     #[arg(long, value_name = "RMS")]
     level: f64,
 
-    /// Speed and normal force at which the texture feels like this, e.g. speed=80,force=0.4
-    /// [default: unknown]
+    /// Speed and normal force for which the parameters are valid, e.g. speed=80,force=0.4 [default:
+    /// unknown]
     #[arg(long, value_name = "speed=MM_S,force=N")]
     at: Option<String>,
 

@@ -9,10 +9,10 @@ use crate::failure::{Exit, Result};
 
 /// Write the manual pages
 ///
-/// Writes one page for each subcommand.
+/// Writes one manual page for each subcommand.
 ///
-/// `man -l DIR/htex-fit.1` shows one page. If DIR is the folder man1 of a folder in MANPATH,
-/// `man htex-fit` finds the page.
+/// `man -l DIR/htex-fit.1` shows one page. `man htex-fit` finds the page if DIR is the subfolder
+/// man1 of a folder in MANPATH.
 #[derive(Args)]
 pub(crate) struct Manual {
     /// Folder to write to; created if it does not exist

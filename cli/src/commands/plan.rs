@@ -14,9 +14,9 @@ use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
 /// Show which stages a scene needs, and why
 ///
-/// Prints the processing stages with which htex would play the scene, and why each one is needed or
-/// left out. Also prints the time that each stage takes, in nanoseconds per sample of the device.
-/// Plays nothing.
+/// Prints the processing stages with which htex would play the scene, and why each stage is needed
+/// or left out. Also prints the time that each stage takes, in nanoseconds per sample of the
+/// device. The command plays nothing.
 #[derive(Args)]
 pub(crate) struct Plan {
     /// The scene

@@ -19,10 +19,10 @@ use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device
 ///
-/// Plays until the scene ends or you press Ctrl-C.
+/// The command plays until the scene ends or you press Ctrl-C.
 ///
-/// htex plays an asset at the speed and force of its first condition, or of its strongest condition
-/// if the first is silent. An asset plays as sound unless you give --device.
+/// htex plays an asset at the speed and force of the asset's first condition, or of its strongest
+/// condition if the first is silent. An asset plays as sound unless you give --device.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -31,12 +31,12 @@ pub(crate) struct Play {
     file: PathBuf,
 
     /// Read the finger's motion from standard input during playback, as lines
-    /// `speed_mm_s force_n [x_mm y_mm]`. The speed is negative on the way back. Playback stops at
-    /// the end of the input
+    /// `speed_mm_s force_n [x_mm y_mm]`. A negative speed means that the finger moves backwards.
+    /// Playback stops at the end of the input
     #[arg(long, value_name = "-", value_parser = ["-"])]
     motion: Option<String>,
 
-    /// Duration, s [default: the scene's own]
+    /// Duration, s [default: the duration of the scene]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
@@ -44,7 +44,7 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
 
-    /// Use the gain that `htex gain --texture` stored under this name
+    /// Use the gain of --person that `htex gain --texture` stored under this name
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 

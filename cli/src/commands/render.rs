@@ -26,24 +26,24 @@ const BLOCK: usize = 4096;
 
 /// Render a scene to a file
 ///
-/// Writes exactly the samples that the scene's device would get. The command does not wait for real
-/// time: it renders as fast as the machine can.
+/// Writes exactly the samples that the scene's device would get. The command renders as fast as the
+/// machine can, not in real time.
 ///
 /// The extension of the file selects the format: WAV, CSV, NPY or raw samples. The samples have the
-/// quantity and the unit of the scene's device, e.g. forces in newtons, drive voltages in volts, or
-/// sound.
+/// quantity and the unit of the scene's device: for example, they are forces in newtons, voltages
+/// in volts, or sound.
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// The file to write. An existing file is replaced [default: the scene's name with .wav; such a
-    /// file must not exist yet]
+    /// The file to write; replaces an existing file [default: the scene's name with .wav; this
+    /// default replaces no existing file]
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
-    /// Duration, s [default: the scene's own]
+    /// Duration, s [default: the duration of the scene]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 

@@ -13,8 +13,9 @@ use crate::output::{command_line, print_json};
 /// Check a device against the rules of the device ABI; exit status 1 if the device breaks a rule.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check. The
-/// checks drive an output at a hundredth of its limit. They also send samples beyond the limit,
-/// which the output must refuse. Do not touch the connected hardware during the checks.
+/// checks drive an output at a hundredth of its limit. They also send samples beyond the limit, to
+/// test that the output refuses such samples. Do not touch the connected hardware during the
+/// checks.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]

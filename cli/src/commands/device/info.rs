@@ -11,8 +11,8 @@ use super::list::descriptor_text;
 /// Show a device's settings, profiles and capabilities.
 ///
 /// For an output, prints what the device can do with the given settings, e.g. its sample rates and
-/// its limit. For an input, prints the rate and the channels. To find them out, the command opens
-/// the input, but it records no samples.
+/// its limit. For an input, prints the sample rate and the channels; for this, the command opens
+/// the input, but records no samples.
 #[derive(Args)]
 pub(crate) struct Info {
     #[command(flatten)]

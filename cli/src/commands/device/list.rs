@@ -10,13 +10,13 @@ use crate::output::{print, print_json, tamed};
 
 /// List all output and input devices.
 ///
-/// An adapter is the code for one kind of device. The command prints each adapter with its
-/// settings, and the connected devices of this kind. Notes at the end name adapters that were found
-/// but are not used.
+/// An adapter is the code for one kind of device, e.g. sound cards. The command prints each
+/// adapter, its settings, and the connected devices of its kind. Notes at the end name the adapters
+/// that htex found but does not use.
 ///
 /// htex searches for adapters in this order: --device-file, --device-dir, the folders in
-/// HTEX_DEVICE_PATH, the user's folder, this program. If two outputs or two inputs have the same
-/// id, htex uses the one that it finds first.
+/// HTEX_DEVICE_PATH, the user's folder, the adapters built into this program. If two outputs or two
+/// inputs have the same id, htex uses only the first that it finds.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

@@ -9,7 +9,7 @@ use crate::located;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
-/// Extract one texture from a library as the .htex file that was packed, byte for byte.
+/// Extract one texture from a library. The .htex file is byte for byte the file that was packed.
 #[derive(Args)]
 pub(crate) struct Cat {
     /// Path or URI of the library

@@ -11,15 +11,15 @@ use crate::output::show;
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 ///
-/// Prints `-` before a texture that only the first library has, `+` before one that only the second
-/// has, and `~` before a texture that differs between the two libraries.
+/// Prints `-` before a texture that only the first library has, `+` before a texture that only the
+/// second library has, and `~` before a texture that differs between the two libraries.
 #[derive(Args)]
 pub(crate) struct Diff {
-    /// Path or URI of a library
+    /// Path or URI of the first library
     #[arg(value_parser = LibraryArg::parser())]
     a: LibraryArg,
 
-    /// Path or URI of the other library
+    /// Path or URI of the second library
     #[arg(value_parser = LibraryArg::parser())]
     b: LibraryArg,
 

@@ -6,29 +6,30 @@ use super::listing::Listing;
 use crate::failure::{Exit, Result, for_file};
 use crate::output::note;
 
-/// List the textures of a library that match all given words and options.
+/// Search a library: list the textures that match all given words and options.
 #[derive(Args)]
 pub(crate) struct Find {
     /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 
-    /// Only textures whose name or tags contain all these words, case-insensitive
+    /// List only textures whose name or tags contain all these words, ignoring case
     words: Vec<String>,
 
-    /// Only textures with this whole tag, case-insensitive; may be given several times
+    /// List only textures that have exactly this tag, ignoring case; may be given several times
     #[arg(long)]
     tag: Vec<String>,
 
-    /// Only textures whose recorded speeds include this one, mm/s
+    /// List only textures with this speed in the range of their recorded speeds, mm/s
     #[arg(long, value_name = "MM_S", value_parser = not_negative)]
     speed: Option<f64>,
 
-    /// Only textures whose recorded normal forces include this one, newtons
+    /// List only textures with this normal force in the range of their recorded forces, newtons
     #[arg(long, value_name = "N", value_parser = not_negative)]
     force: Option<f64>,
 
-    /// Only textures that have the model with this id. The last part of the id is enough, e.g. ar
+    /// List only textures that have the model with this id. The last part of the id is enough, e.g.
+    /// ar
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 

@@ -5,11 +5,12 @@ use super::listing::Listing;
 use crate::failure::{Exit, Result, for_file};
 use crate::output::note;
 
-/// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
+/// List the textures of a library: name, size, recorded speeds and forces, law, models, tags.
 ///
-/// The law says how a texture changes at speeds and forces that were not recorded. The command
-/// prints it as three exponents, e.g. `f^1 v^0 F^1`: f says how the frequencies follow the speed, v
-/// how the level follows the speed, and F how the level follows the force.
+/// The law of a texture describes how the texture changes at speeds and forces that were not
+/// recorded. The command prints the law as three exponents, e.g. `f^1 v^0 F^1`: the exponent of f
+/// is for the frequencies as a function of speed, the exponent of v for the level as a function of
+/// speed, and the exponent of F for the level as a function of force.
 ///
 /// The command reads only the index of the library.
 #[derive(Args)]

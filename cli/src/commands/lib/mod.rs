@@ -23,11 +23,11 @@ use crate::failure::{Result, for_file};
 
 /// Pack, list, verify and unpack libraries
 ///
-/// A library is one file (.htexlib) with any number of textures.
+/// A library is one file (.htexlib) that contains any number of textures. Data that several
+/// textures have in common is stored once.
 ///
 /// htex reads textures one at a time. If the library is on a network (https://, s3://, gs://,
-/// az://), htex downloads only the parts of the file that it needs. Parts that several textures
-/// have in common are stored once.
+/// az://), htex downloads only the parts of the file that are needed.
 #[derive(Args)]
 pub(crate) struct Lib {
     #[command(subcommand)]

@@ -16,17 +16,17 @@ use crate::outputs::check_outputs;
 
 /// Pack textures into a library.
 ///
-/// A texture is named after its file, without `.htex`. A texture in a folder is named after its
-/// path in that folder, e.g. wood/oak. The same textures give the same file, in any order and on
-/// any machine. Each texture must state a licence (`htex edit --license`), because a library is
-/// meant to be passed on.
+/// In the library, a texture has the name of its file, without `.htex`. A texture in a folder is
+/// named after its path in that folder, e.g. wood/oak. The same textures give the same library, in
+/// any order and on any machine. Each texture must state a licence (`htex edit --license`), because
+/// libraries are meant to be passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
     #[arg(value_name = "OUT.htexlib", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// Textures, and folders with textures
+    /// Textures to pack, and folders whose textures to pack
     #[arg(required = true, value_name = "FILE|DIR", value_parser = located::ASSET)]
     inputs: Vec<PathBuf>,
 
@@ -34,8 +34,8 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
-    /// Also pack textures that state no licence. Only the author of such a texture may pass on the
-    /// library
+    /// Also pack textures that state no licence. Nobody except the author of such a texture may
+    /// then pass on the library
     #[arg(long)]
     unlicensed: bool,
 

@@ -8,16 +8,17 @@ use super::LibraryArg;
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::output::{bar, print, shown};
 
-/// Write the textures of a library as files: NAME.htex in a folder.
+/// Write the textures of a library to a folder, each as a file NAME.htex.
 ///
-/// If one of the files exists already, the command keeps it and fails, unless you give --force.
+/// If one of the files exists already, the command fails and leaves that file unchanged, unless you
+/// give --force.
 #[derive(Args)]
 pub(crate) struct Unpack {
     /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 
-    /// Names of textures [default: all]
+    /// Names of the textures to write [default: all]
     names: Vec<String>,
 
     /// Folder to write to; created if it does not exist

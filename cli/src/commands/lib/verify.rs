@@ -7,12 +7,13 @@ use crate::commands::validate::show_reports;
 use crate::failure::{Result, for_file};
 use crate::located;
 
-/// Check the index and every texture of libraries; exit status 1 if a library is not valid.
+/// Check the index and every texture of one or more libraries; exit status 1 if a library is
+/// invalid.
 ///
 /// Each finding has a stable code (`htex explain CODE`).
 #[derive(Args)]
 pub(crate) struct Verify {
-    /// The libraries
+    /// The libraries to check
     #[arg(required = true, value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 

@@ -10,12 +10,12 @@ use crate::failure::{Failure, Result};
 use crate::output::show;
 use crate::plugins::{PluginArgs, way};
 
-/// Measure how long models take per sample: built-in models, native plugins and WASM modules.
+/// Measure the time per sample of built-in models, native plugins and WASM modules.
 ///
-/// Times each model in all forms in which it was found, at the model's own sample rate. All runs
-/// are interleaved, so that other load on the machine affects all of them equally. A WASM module is
-/// timed twice: once with the default limits, which limit the time of a call, and once while its
-/// instructions are counted (--wasm-limit fuel).
+/// Times each model at the model's own sample rate, in every form that htex finds (built in, native
+/// library, WASM module). The runs of all models are interleaved, so that other load on the machine
+/// affects all models equally. A WASM module is timed twice: once with a limit on the time of a
+/// call (the default), and once with a limit on the number of instructions (--wasm-limit fuel).
 #[derive(Args)]
 pub(crate) struct Bench {
     /// Models by short name, id or file [default: all built-in models]

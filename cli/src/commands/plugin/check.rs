@@ -22,21 +22,23 @@ pub(crate) struct Check {
     #[command(flatten)]
     checking: CheckArgs,
 
-    /// Seed of the voices, of random parameters, and of the first sequence in the check `fuzz`
+    /// Seed of the models' random numbers, of random parameters, and of the first sequence of calls
+    /// in the check `fuzz`
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// Run the check `fuzz` for this time, s. The check plays random sequences of calls [default:
-    /// until it has played 16 sequences]
+    /// Run the check `fuzz` for this time, s. The check makes random sequences of calls [default:
+    /// 16 sequences]
     #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
     fuzz: Option<Duration>,
 
-    /// Names of checks to run, comma-separated. Checks on which they depend also run [default: all]
+    /// Names of checks to run, comma-separated. If a check depends on other checks, these also run
+    /// [default: all]
     #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
-    /// Compare the model with the same model in the other form: for a native library give a WASM
-    /// module, and the reverse [default: the other form next to FILE, if there is one]
+    /// Compare the model with the same model in this file. If the model is a native library, give a
+    /// WASM module, and the reverse [default: such a file next to the model, if there is one]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
 }

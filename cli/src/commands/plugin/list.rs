@@ -10,14 +10,15 @@ use crate::failure::Result;
 use crate::output::show;
 use crate::plugins::PluginArgs;
 
-/// List all models, and the plugins that were found but are not used.
+/// List all models, and the plugins that htex found but does not use.
 ///
 /// htex searches for models in this order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH,
-/// the user's folder, this program.
+/// the user's folder, the models built into this program.
 ///
-/// If several models have the same id, htex uses the first one that --plugin names. If --plugin
-/// names none of them, the first of these places that has the model decides the major version. Of
-/// all models with this id and major version, htex then uses the newest, wherever it was found.
+/// If several plugins have the same model id, htex uses the first one that --plugin names. If
+/// --plugin names none of them, htex takes the major version from the first place in this order
+/// that has the model. Among all plugins with this id and major version, in any place, htex uses
+/// the newest.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

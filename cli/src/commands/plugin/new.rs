@@ -11,8 +11,8 @@ use crate::output::print;
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
 
-/// Write a project for a new model; the project builds with one command and passes `htex plugin
-/// check`.
+/// Write a project for a new model. The project builds with one command, and its model passes
+/// `htex plugin check`.
 #[derive(Args)]
 pub(crate) struct New {
     /// Name of the model: lower-case letters, digits and hyphens
@@ -26,8 +26,8 @@ pub(crate) struct New {
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// For --lang rust: the folder `sdk` in the sources of htex [default: the sources from which
-    /// this program was built; a released program has no default]
+    /// For --lang rust: path of the folder `sdk` in the sources of htex [default: the sources from
+    /// which this program was built; a released program has no default]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }

@@ -17,11 +17,11 @@ use crate::recordings::RecordingArgs;
 
 /// Show the texture spectrum of a recording
 ///
-/// htex cuts the recording into segments of 0.2 s and computes the spectrum of each, with a Hann
-/// window. It combines the spectra of several axes into one (by the method DFT321), divides this
-/// spectrum by the frequency response of the rig if you give one (--frf), and averages over the
-/// segments. The result has a magnitude every 5 Hz from 20 to 1000 Hz. A sinusoid of amplitude A at
-/// one of these frequencies has the magnitude A.
+/// htex cuts the recording into segments of 0.2 s and computes the spectrum of each segment, with a
+/// Hann window. If the recording has several axes, htex combines their spectra into one spectrum
+/// (by the method DFT321). With --frf, htex divides the spectrum by the frequency response of the
+/// rig. It then averages the spectra of the segments. The result has a magnitude every 5 Hz from 20
+/// to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
 #[derive(Args)]
 pub(crate) struct Process {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -31,7 +31,7 @@ pub(crate) struct Process {
     #[command(flatten)]
     reading: RecordingArgs,
 
-    /// Draw the recording with the used and the skipped segments as an SVG picture
+    /// Draw the recording as an SVG picture that shows the used and the skipped segments
     #[arg(long, value_name = "SVG", value_parser = located::OUTPUT)]
     svg: Option<PathBuf>,
 

@@ -25,14 +25,14 @@ use crate::outputs::check_outputs;
 ///
 /// Measures the frequency response of a recording rig or a finger display.
 ///
-/// htex computes the response from recordings of the input and the output. If the input is an
-/// impact hammer, htex averages over the hits. It discards double hits, overloaded hits and
-/// incomplete hits, and lists the discarded hits. If the input is a continuous drive such as noise,
-/// give --continuous.
+/// htex computes the response from recordings of the input and the output. By default, the input is
+/// an impact hammer, and htex averages over the hits. It discards double hits, overloaded hits and
+/// incomplete hits, and lists the discarded hits. Give --continuous if the input is a continuous
+/// drive such as noise.
 ///
 /// With --csv, htex writes the response to a CSV file. To correct recordings for the response of a
-/// rig, give this file to the flag --frf of commands such as `htex fit`. To correct playback for
-/// the response of a display, name the file as the `response` of a scene's device.
+/// rig, name this file after --frf in commands such as `htex fit`. To correct playback for the
+/// response of a display, name this file in a scene, as the `response` of the device.
 #[derive(Args)]
 pub(crate) struct Response {
     #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
@@ -41,7 +41,7 @@ pub(crate) struct Response {
 
     /// Column with the force of the hammer or the drive of the display: COLUMN, COLUMN:SCALE, or an
     /// expression of columns (fx1+fx2). COLUMN is a name, a number (#1) or a path in the file
-    /// (/run1/fx). Without SCALE, the values keep the file's unit
+    /// (/run1/fx). Without SCALE, the values are in the file's own unit
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     input: String,
 
@@ -66,7 +66,7 @@ pub(crate) struct Response {
     #[arg(long, value_name = "S")]
     to: Option<f64>,
 
-    /// Maximum number of values of a recording to keep in memory
+    /// Largest number of values of one recording that htex keeps in memory
     #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
     most_numbers: usize,
 

@@ -6,8 +6,7 @@ use crate::output::print;
 
 /// Print JSON Schemas and model descriptors
 ///
-/// Prints one JSON Schema, e.g. of the manifest in an asset or of scenes, or prints the descriptors
-/// of all built-in models.
+/// Prints one JSON Schema, e.g. the schema of scenes, or the descriptors of all built-in models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print
@@ -21,21 +20,21 @@ enum What {
     Manifest,
     /// JSON Schema of scenes
     Scene,
-    /// JSON Schema of a file's report in `htex validate --json`
+    /// JSON Schema of the report on one file in the output of `htex validate --json`
     Report,
     /// JSON Schema of recipes (`htex build`)
     #[cfg(feature = "build")]
     Recipe,
-    /// JSON Schema of `build-report.json`
+    /// JSON Schema of `build-report.json`, which `htex build` writes
     #[cfg(feature = "build")]
     BuildReport,
     /// JSON Schema of studies (`htex study`)
     #[cfg(feature = "lab")]
     Study,
-    /// JSON Schema of one line in a participant's file of answers (`htex study run`)
+    /// JSON Schema of one line in the file with a participant's answers (`htex study run`)
     #[cfg(feature = "lab")]
     Answers,
-    /// JSON Schema of the header that describes a take (`htex record`)
+    /// JSON Schema of the file that describes a recording made by `htex record`
     #[cfg(feature = "lab")]
     Take,
     /// JSON Schema of the file of stored gains (`htex gain`)

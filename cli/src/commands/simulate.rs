@@ -14,9 +14,9 @@ use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
 ///
-/// The signal is meant for experiments. It imitates a finger that slides over a surface: it
-/// contains friction, the texture at the finger's position, the resonance of a rig, and sensor
-/// noise. It is not a measurement, and the file states that it is simulated.
+/// The recording is meant for experiments. The signal imitates a finger that slides over a surface:
+/// the sum contains friction, the texture at the finger's position, the resonance of a rig, and
+/// sensor noise. The recording is not a measurement, and its file states that it is simulated.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl
@@ -44,24 +44,24 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 20_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// How the finger moves: back-and-forth sweeps at one speed and force, or freely, in strokes of
+    /// How the finger moves: in back-and-forth sweeps at one speed and force, or in free strokes of
     /// random speed and force
     #[arg(long, value_enum, default_value = "sweeps")]
     motion: MotionArg,
 
-    /// Scanning speed, mm/s [default: 80]. For --motion free, the lowest and the highest speed
+    /// Scanning speed, mm/s [default: 80]. For --motion free, give the lowest and the highest speed
     /// [default: 36:280]
     #[arg(long, value_name = "MM_S")]
     speed: Option<Range>,
 
-    /// Normal force, N [default: 0.4]. For --motion free, the lowest and the highest force
+    /// Normal force, N [default: 0.4]. For --motion free, give the lowest and the highest force
     /// [default: 0.15:3.8]
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
-    /// Exponents of the power laws by which frequencies and level follow speed and force:
+    /// Exponents of the power laws by which frequencies and level depend on speed and force:
     /// frequency-speed=X,level-speed=X,level-force=X. At 80 mm/s and 0.4 N, the exponents have no
-    /// effect. The default, 1, 0 and 1, is the law of a rigid relief
+    /// effect. The default exponents 1, 0 and 1 describe a rigid relief
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 
@@ -75,7 +75,8 @@ pub(crate) struct Simulate {
     lifted: f64,
 
     /// Write the true spectra of the surface to this JSON file (only with --motion free). The file
-    /// has the magnitudes over the range of speeds, and the rule by which they depend on the force
+    /// contains the magnitudes over the range of speeds, and the rule by which the magnitudes
+    /// depend on the force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
 }

@@ -15,10 +15,10 @@ use crate::plugins::PlayerArgs;
 ///
 /// Prints the spectrum of one of the asset's models, from 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// You can compare the magnitudes with the output of `htex process`: if you play the texture for a
-/// long time and record it, `htex process` prints the same magnitudes, as long as it averages the
-/// segments by power (the default, --averaging rms). Outside the recorded speeds and forces, the
-/// magnitudes follow the law of the asset, as during playback.
+/// These are the magnitudes that `htex process` would print for a long recording of the played
+/// texture, with its default --averaging rms. Outside the recorded speeds and forces, the
+/// magnitudes follow the law of the asset, i.e. its rule for speeds and forces that were not
+/// recorded.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -31,8 +31,8 @@ pub(crate) struct Spectrum {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Do not apply the law of the asset: outside the recorded speeds and forces, show the spectrum
-    /// at the nearest recorded speed and force
+    /// Do not apply the law of the asset. Outside the recorded speeds and forces, show the spectrum
+    /// at the nearest recorded speed and force instead
     #[arg(long)]
     unscaled: bool,
 
@@ -41,7 +41,7 @@ pub(crate) struct Spectrum {
     json: bool,
 }
 
-/// The choice of the model that plays an asset, and of the motion.
+/// Options that select the model, the speed and the force at which to play an asset.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
     /// Model of the asset to use, by short name or id [default: the model with the smallest
@@ -49,13 +49,13 @@ pub(crate) struct ChoiceArgs {
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,
 
-    /// Scanning speed, mm/s [default: the speed of the first condition, or of the strongest if the
-    /// first is silent]
+    /// Scanning speed, mm/s [default: the speed of the asset's first condition, or of the strongest
+    /// condition if the first is silent]
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N [default: the force of the first condition, or of the strongest if the first
-    /// is silent]
+    /// Normal force, N [default: the force of the asset's first condition, or of the strongest
+    /// condition if the first is silent]
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 }

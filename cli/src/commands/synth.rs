@@ -16,9 +16,9 @@ use crate::wav::write_wav;
 
 /// Play an asset to a WAV file
 ///
-/// The samples are 32-bit floats in the asset's unit, such as newtons. Forces of a few millinewtons
-/// are quiet: to listen, raise the level of the file in an audio editor, or use `htex play` in a
-/// build with sound.
+/// The samples are 32-bit floats in the asset's unit, such as newtons. A force of a few
+/// millinewtons gives a very quiet file. To listen, raise the level of the file in an audio editor,
+/// or use `htex play` in a build with sound.
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset
@@ -31,13 +31,13 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Do not apply the law of the asset: outside the recorded speeds and forces, play the texture
-    /// as it was recorded at the nearest speed and force. By default, frequencies and level follow
-    /// the law outside the recorded speeds and forces, and a resting finger feels nothing
+    /// Outside the recorded speeds and forces, play the texture as it was recorded at the nearest
+    /// speed and force. By default, frequencies and level follow the asset's law outside the
+    /// recorded speeds and forces, and a finger at rest feels nothing
     #[arg(long)]
     as_recorded: bool,
 
-    /// Highest level to which the law of the asset may raise the texture, as a multiple of the
+    /// Largest level of the texture outside the recorded speeds and forces, as a multiple of the
     /// strongest recorded level; above 0
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
@@ -55,9 +55,9 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// How to make the samples: `streamed` (the model computes every sample), `loop[:SECONDS]` (a
-    /// piece of the model's samples, repeated) or `filter[:TAPS]` (white noise through a filter).
-    /// Loop and filter need less computation, but their spectrum cannot follow the motion
+    /// How to make the samples. `streamed`: the model computes every sample. `loop[:SECONDS]`: a
+    /// piece of the model's samples repeats. `filter[:TAPS]`: a filter shapes white noise. Loops
+    /// and filters need less computation, but their spectrum cannot follow the motion
     #[arg(long, default_value_t = Synthesis::Streamed, value_name = "WAY")]
     quality: Synthesis,
 

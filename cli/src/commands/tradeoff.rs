@@ -25,12 +25,13 @@ use crate::recordings::RecordingArgs;
 
 /// Measure accuracy against bytes and time
 ///
-/// Fits models to your recordings, with many values of the models' options. For each setting,
-/// measures the error, the bytes and the time.
+/// Fits models to your recordings with many settings, i.e. combinations of the models' options. For
+/// each setting, measures the error, the size in bytes and the computing time.
 ///
-/// Measures each setting on each recording, and computes the medians over all recordings. Writes a
-/// page that shows each setting as a point. The same points are in a CSV and a JSON file next to
-/// the page. To continue an interrupted sweep, run the same command again.
+/// The command measures each setting on each recording, and computes the medians over all
+/// recordings. It writes a page that shows each setting as a point, and writes the same points to a
+/// CSV and a JSON file next to the page. To continue an interrupted run, give the same command
+/// again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     #[arg(help = format!("Recordings: {}", format_names()))]
@@ -46,22 +47,24 @@ pub(crate) struct Tradeoff {
     #[arg(long, value_delimiter = ',', value_name = "ID,…")]
     only: Vec<String>,
 
-    /// Save time: vary only one option at a time, over its lowest, middle and highest value, and
-    /// measure times with fewer runs
+    /// Finish sooner: vary only one option at a time, over its lowest, middle and highest value,
+    /// and measure each computing time with fewer runs
     #[arg(long)]
     quick: bool,
 
-    /// The error to show in the pictures, and to use for finding the best settings (fronts and
-    /// knees)
+    /// The error to show in the pictures, and to minimise in the search for the best settings
+    /// (fronts and knees)
     ///
-    /// held-out: htex fits a model to the odd blocks of a recording, plays the model, and compares
-    /// the result with the even blocks in third octaves. An error of 1 means that the model is as
-    /// close as a second recording. The other errors compare a model with the recording to which it
-    /// was fitted [default: held-out; third-octave if a recording is too short]
+    /// held-out: htex fits a model to every second block of a recording, plays the model, and
+    /// compares the result in third octaves with the other blocks. A held-out error of 1 means that
+    /// the model is as close to the recording as a second recording of the surface. The other
+    /// errors compare a model with the recording to which the model was fitted [default: held-out;
+    /// third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 
-    /// The page to write; the points are written next to it as .csv and .json
+    /// The page to write. The command writes the points to a .csv and a .json file with the same
+    /// name
     #[arg(short, long, value_name = "HTML", value_parser = located::LOCAL_OUTPUT)]
     output: PathBuf,
 

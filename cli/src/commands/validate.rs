@@ -26,28 +26,30 @@ use crate::wasm_limits::WasmLimit;
 /// against their formats and JSON Schemas. The exit status is 1 if a file is invalid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer to its
-/// place in the document or the recording. If a JSON Schema contains the same rule, the finding
-/// names the schema's rule. If this program has a model that an asset uses, htex also compares the
-/// asset's fields with the model's. In a recipe, htex checks the keys, files, plugins, options and
-/// gates (requirements for the textures).
+/// place in the document or the recording. If a rule is also in a JSON Schema, the finding names
+/// its place in the schema. For the models that this program has, htex also compares the fields in
+/// an asset with the fields in the model's descriptor. In a recipe, htex checks the keys, files,
+/// plugins, options and gates (requirements for the textures).
 ///
 /// htex recognises a file by its name: *.htex is an asset, *.htexlib a library, *.json a scene or a
-/// descriptor, *.toml a recipe. A file with another name is an asset if it begins like a ZIP
-/// archive, a library if it begins like a library, and otherwise a recording.
+/// descriptor, *.toml a recipe. For a file with another name, the first bytes decide: a ZIP archive
+/// is an asset, a file with the first bytes of a library is a library, and any other file is a
+/// recording.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
     #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
-    /// Check the extension with this name against the JSON Schema in FILE (draft 2020-12). htex
-    /// downloads no schemas to which FILE refers. May be given several times
+    /// Check the extension (third-party metadata in an asset) with this name against the JSON
+    /// Schema in FILE (draft 2020-12). htex does not download schemas to which FILE refers. May be
+    /// given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
     /// Also load the models that are embedded in assets and in the assets of scenes, and compare
-    /// them with the fields of the assets. The models run in a sandbox. By default, htex runs no
-    /// embedded model
+    /// the models' descriptors with the fields of the assets. The models run in a sandbox. By
+    /// default, htex runs no embedded model
     #[arg(long)]
     embedded_plugins: bool,
 

@@ -34,8 +34,8 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
-    /// Also pack textures that state no licence. Nobody except the author of such a texture may
-    /// then pass on the library
+    /// Also pack textures that state no licence. Only the author of such a texture may then pass on
+    /// the library
     #[arg(long)]
     unlicensed: bool,
 

@@ -22,7 +22,7 @@ pub(crate) struct Check {
     #[command(flatten)]
     checking: CheckArgs,
 
-    /// Seed of the models' random numbers, of random parameters, and of the first sequence of calls
+    /// Seed of the model's random numbers, of random parameters, and of the first sequence of calls
     /// in the check `fuzz`
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,

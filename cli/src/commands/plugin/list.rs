@@ -15,9 +15,9 @@ use crate::plugins::PluginArgs;
 /// htex searches for models in this order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH,
 /// the user's folder, the models built into this program.
 ///
-/// If several plugins have the same model id, htex uses the first one that --plugin names. If
+/// If several models have the same id, htex uses the first of these models that --plugin names. If
 /// --plugin names none of them, htex takes the major version from the first place in this order
-/// that has the model. Among all plugins with this id and major version, in any place, htex uses
+/// that has such a model. Among the models with this id and major version in all places, htex uses
 /// the newest.
 #[derive(Args)]
 pub(crate) struct List {

@@ -14,12 +14,12 @@ use crate::signals;
 /// Polling interval for the start request of the page.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Where the guidance is shown, and what it shows.
+/// Options for the guidance: where to show it, and which strokes to show.
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {
     /// Show the guidance on a web page of this machine instead of in the terminal. The command
-    /// prints the address of the page. Start the session on the page
+    /// prints the address of the page. You start the session on the page
     #[arg(long)]
     page: bool,
 

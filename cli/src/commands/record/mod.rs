@@ -25,14 +25,14 @@ use guide::{Guide, GuideArgs};
 
 /// Record a finger on a surface, with guidance
 ///
-/// A take is a recording of --seconds. If the speed or the force of a take leaves its target, or if
-/// the finger slides too little, htex sets the take aside and records another one. The command ends
-/// with the first good take.
+/// A take is one recording with the duration --seconds. If the speed or the force of a take leaves
+/// its target, or if the finger slides for too short a time, htex rejects the take and records
+/// another take. The command ends after the first good take.
 ///
 /// htex stores takes as DIR/NAME-001.csv and so on. A JSON file next to each take contains all
-/// settings, and DIR/tracker contains the rows of the tracker. Takes that were set aside are in
-/// DIR/rejected, and incomplete takes in DIR/incomplete. During a take, htex writes to disk every
-/// second. If a crash interrupts a take, the next run of the command recovers what was written.
+/// settings, and DIR/tracker contains the positions that the tracker measured. DIR/rejected
+/// contains the rejected takes, and DIR/incomplete the incomplete takes. During a take, htex writes
+/// to disk every second. After a crash, the next run of the command recovers the data on disk.
 #[derive(Args)]
 pub(crate) struct Record {
     /// Source of the signals: a recording to replay (file:rec.csv), analog inputs of a National
@@ -43,7 +43,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     settings: SettingArgs,
 
-    /// Replay a file as fast as possible, without waiting
+    /// Replay a recording (file:…) as fast as possible instead of in real time
     #[arg(long, help_heading = "Source")]
     fast: bool,
 
@@ -53,7 +53,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     input: InputArgs,
 
-    /// Name of the takes, with which their file names begin
+    /// Name of the takes; the names of their files begin with this name
     #[arg(long, value_name = "NAME", default_value = "take")]
     take: String,
 
@@ -66,9 +66,9 @@ pub(crate) struct Record {
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract from each signal its offset: its mean while no finger is on the surface. Positions
-    /// and speeds stay as they are. htex measures the offsets for one second, before the first take
-    /// (once) or before each take (each)
+    /// Subtract from each signal its offset, i.e. its mean while no finger is on the surface.
+    /// Positions and speeds are not changed. htex measures the offsets for one second before the
+    /// first take (once) or before each take (each)
     #[arg(
         long,
         value_enum,
@@ -87,25 +87,26 @@ pub(crate) struct Record {
     target_force: Option<f64>,
 
     /// Allowed difference from the target speed and force, as a fraction of the target. In the
-    /// middles of the sweeps, the mean, the minimum and the maximum of speed and force must be
+    /// middle of each sweep, the mean, the minimum and the maximum of speed and force must be
     /// within this tolerance
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
-    /// Accept a take only if the finger slides on target for at least this fraction of the take. On
-    /// target means: with the target force, and with a speed from half of the target to the
-    /// tolerance above the target. Without a target, any sliding counts. 0 turns this test off. The
-    /// fraction is never 1, because the finger turns between sweeps
+    /// Accept a take only if the finger slides on target for at least this fraction of the take.
+    /// The finger is on target if its force is within the tolerance, and its speed is between half
+    /// of the target speed and the upper limit of the tolerance. Without a target, htex counts all
+    /// sliding. No take reaches a fraction of 1, because the finger turns between sweeps. 0 turns
+    /// this test off
     #[arg(long, value_name = "PART", default_value_t = Requirements::USUAL_ON_TARGET)]
     min_on_target: f64,
 
     /// Accept a take only if it has at least this number of complete sweeps. 0 turns this test off
-    /// [default: half of the strokes that the guidance shows in a take, not counting the first and
-    /// the last stroke, e.g. 4 for 10 s at 80 mm/s; 0 without a target speed]
+    /// [default: half of the strokes that the guidance shows in a take, without the first and the
+    /// last stroke, e.g. 4 for 10 s at 80 mm/s; 0 without a target speed]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 
-    /// Give up after this many takes
+    /// Maximum number of takes; if all of them are rejected, the command fails
     #[arg(long, value_name = "N", default_value_t = 10)]
     attempts: u32,
 

@@ -12,12 +12,12 @@ use crate::output::tell;
 /// Size of a page's pixel by the definition of CSS, millimetres. Real screens differ.
 const CSS_PIXEL_MM: &str = "0.2646";
 
-/// How a session asks, and the source of the motion if the study's motion is live.
+/// Options that set where a session asks its questions, and where a live motion comes from.
 #[derive(Args)]
 #[command(next_help_heading = "Session")]
 pub(super) struct AskingArgs {
-    /// Ask on a web page of this machine instead of in the terminal. The command prints the address
-    /// of the page
+    /// Ask the questions on a web page of this machine instead of in the terminal. The command
+    /// prints the address of the page
     #[arg(long)]
     page: bool,
 
@@ -36,13 +36,13 @@ pub(super) struct AskingArgs {
     #[arg(long, value_name = "SOURCE", value_parser = ["-", "page"])]
     motion: Option<String>,
 
-    /// Width of one pixel of the page, mm, for --motion page. Measure the width of 1000 pixels on
-    /// your screen and divide it by 1000
+    /// Width of one pixel of the page, mm, for --motion page. To find it, measure the width of 1000
+    /// pixels on your screen and divide by 1000
     #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
     touch_mm_per_px: f64,
 
-    /// Normal force to assume for a finger on the page, N, for --motion page; a page cannot measure
-    /// the force
+    /// Normal force to assume for a finger on the page, N, for --motion page, because a page cannot
+    /// measure the force
     #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
     touch_force: f64,
 }

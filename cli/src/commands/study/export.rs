@@ -11,14 +11,14 @@ use crate::failure::Result;
 use crate::located;
 use crate::output::{show, shown, warn, write_file};
 
-/// Write the ratings of all participants as a table, and the spectra that they felt as another
-/// table.
+/// Write a table of all participants' ratings, and a table of the spectra that the participants
+/// felt.
 ///
 /// The table of ratings has the columns participant, texture, model, repetition, rating, attribute,
-/// hidden_reference, response_ms, gain_db, simulated and off_target. The column off_target says
-/// whether speed or force left the study's target by more than 10 %. The column is empty if neither
-/// speed nor force was measured. The table of spectra has the columns participant, texture, model,
-/// and a magnitude for 20, 25, …, 1000 Hz.
+/// hidden_reference, response_ms, gain_db, simulated and off_target. The column off_target states
+/// whether speed or force left the study's target by more than 10 %. Without measurements of speed
+/// and force, the column is empty. The table of spectra has the columns participant, texture and
+/// model, and a column with the magnitude at each of the frequencies 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(crate) struct Export {
     /// Folder with the answers, as written by `htex study run`

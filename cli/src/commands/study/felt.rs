@@ -15,10 +15,10 @@ use crate::inputs::{InputArgs, paced};
 use crate::invocation::tool;
 use crate::output::warn;
 
-/// The source that records what participants feel.
+/// Options for the source of signals that records what participants feel.
 #[derive(Args)]
 pub(super) struct FeltArgs {
-    /// Record what the finger feels during each trial, from this source: analog inputs of a
+    /// Record the signals at the finger during each trial from this source: analog inputs of a
     /// National Instruments card (daq:Dev1/ai0:5), a recording that is replayed in each trial
     /// (file:rec.csv), or another source in `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]

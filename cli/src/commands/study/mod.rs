@@ -26,8 +26,8 @@ use crate::failure::{Failure, Result};
 
 /// Plan, run and analyse rating studies
 ///
-/// A study is described by a file such as study.toml. `htex schema study` prints the JSON Schema of
-/// such files. The defaults are the values of the study in the paper.
+/// A file such as study.toml describes a study. `htex schema study` prints the JSON Schema of such
+/// files. The default values are those of the study in the paper.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]
@@ -55,11 +55,12 @@ impl Study {
     }
 }
 
-/// A subcommand that only the `htex` command of the Python package implements. Here it is an error.
+/// A subcommand that only the `htex` command of the Python package implements. In this program, the
+/// subcommand only prints an error.
 #[derive(Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct PythonCommand {
-    /// Accepts any arguments, so that all of them lead to the same error.
+    /// Accepts any arguments, so that every call of the subcommand leads to the same error.
     #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
     _arguments: Vec<OsString>,
 }

@@ -11,9 +11,9 @@ use crate::located;
 use crate::output::{show, shown, write_file};
 use crate::outputs::check_outputs;
 
-/// Write the order of trials for every participant.
+/// Write the order of the trials of every participant.
 ///
-/// The order depends only on the study: the same seed gives the same order on every machine.
+/// The order depends only on the study and its seed, and is the same on every machine.
 /// `htex study run` follows this order.
 #[derive(Args)]
 pub(crate) struct Plan {

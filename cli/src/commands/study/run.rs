@@ -23,12 +23,13 @@ use crate::output::{print, print_json, shown, tell};
 use crate::scenes::{ChoiceArgs, SceneArgs};
 use crate::signals;
 
-/// Run the session of a participant: play each trial on the device, ask, and store the answer.
+/// Run the session of a participant: play each trial on the device, ask for the rating, and store
+/// the answer.
 ///
-/// Each answer is a line of DIR/PARTICIPANT.jsonl, which is on disk before the next trial begins.
-/// If a session was left (q, Ctrl-C) or killed, run the same command again to continue it. If the
-/// study, one of its assets or the device has changed since the session began, htex refuses to
-/// continue. Answers to different versions are therefore never mixed.
+/// Each answer is a line of the file DIR/PARTICIPANT.jsonl. htex writes the line to disk before the
+/// next trial begins. To continue a session that you left (q, Ctrl-C) or that was killed, run the
+/// same command again. If the study, one of its assets or the device has changed since the session
+/// began, htex refuses to continue, so a file never mixes answers to different versions.
 #[derive(Args)]
 pub(crate) struct Run {
     /// The study: study.toml
@@ -45,12 +46,13 @@ pub(crate) struct Run {
     #[command(flatten)]
     asking: AskingArgs,
 
-    /// Simulate the participant's answers, with this seed. Every file states that its answers are
-    /// simulated
+    /// Simulate the participant's answers, with this seed of random numbers. Every file of answers
+    /// then states that its answers are simulated
     #[arg(long, value_name = "SEED")]
     simulated: Option<u64>,
 
-    /// Do not wait: rests end at once, and devices without a clock play trials as fast as they can
+    /// Do not wait during rests, and play trials as fast as possible on devices without a clock,
+    /// such as files
     #[arg(long, requires = "simulated")]
     fast: bool,
 

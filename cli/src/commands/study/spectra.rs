@@ -13,13 +13,14 @@ use crate::failure::{Failure, Result};
 use crate::located;
 use crate::recordings::RecordingArgs;
 
-/// Options for the spectra that participants felt, and for the real textures to compare them with.
+/// Options for the table of the spectra that participants felt, and of the spectra of the real
+/// textures.
 #[derive(Args)]
 #[command(next_help_heading = "Spectra")]
 pub(super) struct SpectraArgs {
-    /// The table of spectra to write, CSV, for `htex study analyse --spectra`. For each texture and
-    /// model it contains the spectrum that each participant felt, averaged over the trials. It also
-    /// contains the spectrum of each real texture
+    /// The table of spectra to write, CSV, for `htex study analyse --spectra`. For each
+    /// participant, texture and model, the table contains the spectrum that the participant felt,
+    /// averaged over the trials. The table also contains the spectrum of each real texture
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 
@@ -28,18 +29,19 @@ pub(super) struct SpectraArgs {
     study: Option<PathBuf>,
 
     /// What to do with recordings of trials whose speed or force left the study's target by more
-    /// than 10 %. This is the limit for recordings of textures. Participants do not have to keep to
-    /// it
+    /// than 10 %. The recordings of textures have the same limit, but participants do not have to
+    /// keep within this limit
     #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 
-    /// Divide the spectra of the trials by this frequency response of the sensor that recorded
-    /// them: a CSV as for --frf
+    /// Frequency response of the sensor that recorded the trials, a CSV as for --frf. htex divides
+    /// the spectra of the trials by this response
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
     felt_frf: Option<PathBuf>,
 
-    /// Use this recording of a real texture instead of the spectrum in its asset; may be given
-    /// several times. The options for reading recordings apply to these recordings
+    /// Use the spectrum of this recording of a real texture instead of the spectrum in the
+    /// texture's asset; may be given several times. The options for reading recordings apply to
+    /// these recordings
     #[arg(long, value_name = "TEXTURE=FILE", requires = "spectra")]
     recorded: Vec<String>,
 

@@ -9,11 +9,10 @@ use crate::commands::validate::show_reports;
 use crate::failure::Result;
 use crate::scenes::{ChoiceArgs, SceneArgs};
 
-/// Check a study, the assets that it names, and its device; exit status 1 if the study cannot be
-/// run.
+/// Check a study, its assets and its device; exit status 1 if the study cannot be run.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
-/// study.
+/// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer to its
+/// place in the study.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The study: study.toml

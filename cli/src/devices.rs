@@ -31,12 +31,12 @@ fn builtin() -> Vec<Arc<dyn Adapter>> {
     recordings.into_iter().chain(htex_device_builtin::devices()).collect()
 }
 
-/// Where to search for devices.
+/// Options that set where htex searches for devices.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Devices")]
 pub(crate) struct DeviceArgs {
-    /// Load this native library, which contains a device; may be given several times. A library
-    /// runs with all your rights, so load only a library that you trust
+    /// Load the device in this native library; may be given several times. A library runs with all
+    /// your rights, so load only a library that you trust
     #[arg(long, value_name = "FILE")]
     device_file: Vec<PathBuf>,
 
@@ -118,7 +118,7 @@ pub(crate) struct OneDeviceArgs {
     #[arg(value_name = "FILE|ID")]
     pub(crate) device: String,
 
-    /// Use the input, if an input and an output have this name
+    /// Use the input if both an input and an output have this name
     #[arg(long)]
     input: bool,
 
@@ -171,13 +171,13 @@ impl OneDeviceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// Use this profile of the device, which is a group of settings; `htex device info` lists the
+    /// Use this profile, i.e. this group of settings, of the device; `htex device info` lists the
     /// profiles
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// Change a setting of the device, e.g. rate_hz=20000; may be given several times. This
-    /// overrides the profile
+    /// Change a setting of the device, e.g. rate_hz=20000; may be given several times. Such a
+    /// setting overrides the profile
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }

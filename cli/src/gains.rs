@@ -12,7 +12,7 @@ use crate::failure::{Failure, Result};
 use crate::output::warn;
 use crate::scenes::Ready;
 
-/// The representation and levels to use instead of the scene's.
+/// Options that replace the models and the levels of a scene.
 #[derive(Args)]
 pub(crate) struct FeltArgs {
     /// Play every surface with this model, by short name or id
@@ -20,8 +20,9 @@ pub(crate) struct FeltArgs {
     model: Option<String>,
 
     /// `normalised`: a texture is equally strong with every model. `own`: the models differ in
-    /// strength as their energies differ. The drive then applies to the model with which the gain
-    /// of --person was found, or without --person to the strongest model
+    /// strength as the energies of their spectra differ. With `own`, the drive voltage applies to
+    /// the model with which the gain of --person was found; without --person, it applies to the
+    /// strongest model
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }

@@ -13,19 +13,19 @@ use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, 
 
 use crate::failure::{Failure, Result};
 
-/// The signals of a source, and a separate tracker of the finger's motion.
+/// Options for the signals of a source, and for a separate tracker of the finger's motion.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
 pub(crate) struct InputArgs {
-    /// What each channel measures, and its scale, written as for `htex fit`:
+    /// What each channel measures, and its scale, written as for `htex fit`, e.g.
     /// lateral_x=fx1+fx2,normal=-fz*0.31. By default, htex recognises the channels by their names
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Option<String>,
 
-    /// Calibration of a six-axis force sensor on the first six channels, which are then called fx,
-    /// fy, fz, tx, ty, tz. The file has six rows of six numbers (N and N m per volt), as CSV or as
-    /// `matrix` in TOML. Give a second file for a sensor on the next six channels. The channels of
-    /// two sensors are called fx1, fx2, …
+    /// File with the calibration of a six-axis force sensor on the first six channels. The channels
+    /// are then called fx, fy, fz, tx, ty, tz. The file has six rows of six numbers (N and N m per
+    /// volt), as CSV or as `matrix` in TOML. Give a second file for a second sensor on the next six
+    /// channels. The channels are then called fx1, …, tz1 and fx2, …, tz2
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
@@ -45,7 +45,7 @@ pub(crate) struct InputArgs {
     tracker_map: Option<String>,
 
     /// Format in which to store the recordings [default: csv; for the trials of a study npy, which
-    /// takes a third of the space]
+    /// takes a third of the space of csv]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
 }

@@ -9,12 +9,12 @@ use crate::failure::{Result, for_file};
 use crate::output::warn;
 use crate::wasm_limits::WasmLimit;
 
-/// Where to search for models.
+/// Options that set where htex searches for models.
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub(crate) struct PluginArgs {
-    /// Load this plugin, which contains a model; may be given several times. A WASM module runs in
-    /// a sandbox. A native library runs with all your rights, so load only a library that you trust
+    /// Load the model in this plugin; may be given several times. A WASM module runs in a sandbox.
+    /// A native library runs with all your rights, so load only a library that you trust
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
@@ -23,16 +23,16 @@ pub(crate) struct PluginArgs {
     #[arg(long, value_name = "DIR")]
     plugin_dir: Vec<PathBuf>,
 
-    /// Limit what WASM models may use, e.g. memory-mib=128; may be given several times. The numbers
-    /// in brackets are the defaults. Limits of each model: memory-mib (memory of one instance)
-    /// [64], stack-kib [256], call-ms (time of one call that does not render) [5000], render-ms
-    /// (time to render 8192 samples, or of one retune) [500], voices [256], table-elements [10000],
-    /// module-mib (size of the module) [16], fuel (instructions in one call) [no limit], compile-ms
-    /// (time to compile the module) [5000], compile-mib (memory to compile the module) [512].
-    /// Limits that all models of one asset share: asset-ms (time to compile, and of all calls
-    /// except calls of voices) [10000], asset-mib [512], asset-instances [512]. Limits that all
-    /// models in one command share: all-ms (like asset-ms) [30000], all-mib [1024], all-instances
-    /// [2048]
+    /// Limit the time, memory and other resources of WASM models, e.g. memory-mib=128; may be given
+    /// several times. The numbers in square brackets are the defaults. Limits of each model:
+    /// memory-mib (memory of one instance) [64], stack-kib [256], call-ms (time of one call that
+    /// does not render) [5000], render-ms (time to render 8192 samples, or of one retune) [500],
+    /// voices [256], table-elements [10000], module-mib (size of the module) [16], fuel
+    /// (instructions in one call) [no limit], compile-ms (time to compile the module) [5000],
+    /// compile-mib (memory to compile the module) [512]. Limits on the sum over all models of one
+    /// asset: asset-ms (time to compile and time of all calls, except calls of voices) [10000],
+    /// asset-mib (memory) [512], asset-instances [512]. Limits on the sum over all models in one
+    /// command: all-ms [30000], all-mib [1024], all-instances [2048]
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 }
@@ -86,7 +86,8 @@ impl PluginArgs {
     }
 }
 
-/// Where to search for models when an asset is played, which may embed its own.
+/// Options for the models that play an asset: where htex searches for models, and whether it runs
+/// the models that the asset embeds.
 #[derive(Args)]
 pub(crate) struct PlayerArgs {
     #[command(flatten)]

@@ -24,23 +24,23 @@ pub(crate) struct RecordingArgs {
     #[command(flatten)]
     pub(crate) settings: ReadingSettings,
 
-    /// Scanning speed of the recordings, mm/s. It replaces the speed that a recording states
+    /// Scanning speed of the recordings, mm/s. This value replaces a speed in the recording
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force of the recordings, N. It replaces the force that a recording states
+    /// Normal force of the recordings, N. This value replaces a force in the recording
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
-    /// Speed and normal force of each recording in order, or one pair for all recordings:
-    /// speed=80,force=0.4 (mm/s, N). If a recording contains the finger's motion, htex leaves out
-    /// segments whose speed or force differs from this pair by more than 10 %
+    /// Speed and normal force, e.g. speed=80,force=0.4 (mm/s, N). Give one such pair for all
+    /// recordings, or one pair for each recording in their order. If a recording contains the
+    /// finger's motion, htex leaves out segments whose speed or force differs from this pair by
+    /// more than 10 %
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 
-    /// Refuse a recording with findings that are errors or warnings (`htex validate` lists them):
-    /// clipping, spikes, a stuck sensor, a speed or force that leaves its target by more than 10 %,
-    /// …
+    /// Refuse a recording that has errors or warnings in `htex validate`, e.g. clipping, spikes, a
+    /// stuck sensor, or a speed or force that leaves its target by more than 10 %
     #[arg(long)]
     strict: bool,
 }

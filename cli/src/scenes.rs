@@ -20,7 +20,7 @@ use crate::plugins::PlayerArgs;
 use crate::schemas::SchemaFile;
 use crate::wasm_limits::WasmLimit;
 
-/// Models and devices for a scene.
+/// Options for finding the models and the devices of a scene.
 #[derive(Args)]
 pub(crate) struct SceneArgs {
     #[command(flatten)]
@@ -30,19 +30,19 @@ pub(crate) struct SceneArgs {
     pub(crate) devices: DeviceArgs,
 }
 
-/// A device and its settings.
+/// Options that select the device of a scene and its settings.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// Use this device instead of the scene's, by short name or id. htex then ignores the scene's
-    /// settings for its device
+    /// Use this device, by short name or id, instead of the device in the scene. htex then also
+    /// ignores the settings of the scene's device
     #[arg(long, value_name = "ID", help_heading = "Devices")]
     pub(crate) device: Option<String>,
 
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
 
-    /// Factor from the assets' unit to the device's unit, if the quantities differ: 0.1 plays an
-    /// acceleration of 1 m/s2 as 0.1 N
+    /// Factor from the unit of the assets to the unit of the device, if their quantities differ.
+    /// For example, 0.1 plays an acceleration of 1 m/s2 as a force of 0.1 N
     #[arg(long, value_name = "GAIN", help_heading = "Devices")]
     quantity_gain: Option<f64>,
 }

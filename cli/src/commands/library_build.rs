@@ -88,7 +88,7 @@ pub(crate) struct Build {
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 
-    /// Limit what WASM models may use; `htex fit --help` lists the names
+    /// Limit the resources of WASM models; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 

@@ -27,9 +27,9 @@ use crate::wasm_limits::WasmLimit;
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer to its
 /// place in the document or the recording. If a rule is also in a JSON Schema, the finding names
-/// its place in the schema. For the models that this program has, htex also compares the fields in
-/// an asset with the fields in the model's descriptor. In a recipe, htex checks the keys, files,
-/// plugins, options and gates (requirements for the textures).
+/// the rule's place in the schema. For the models that this program has, htex also compares the
+/// fields in an asset with the fields in the model's descriptor. In a recipe, htex checks the keys,
+/// files, plugins, options and gates (requirements for the textures).
 ///
 /// htex recognises a file by its name: *.htex is an asset, *.htexlib a library, *.json a scene or a
 /// descriptor, *.toml a recipe. For a file with another name, the first bytes decide: a ZIP archive
@@ -41,9 +41,8 @@ pub(crate) struct Validate {
     #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
-    /// Check the extension (third-party metadata in an asset) with this name against the JSON
-    /// Schema in FILE (draft 2020-12). htex does not download schemas to which FILE refers. May be
-    /// given several times
+    /// In assets, check the extension with this name against the JSON Schema in FILE (draft
+    /// 2020-12). htex does not download schemas to which FILE refers. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
@@ -53,7 +52,7 @@ pub(crate) struct Validate {
     #[arg(long)]
     embedded_plugins: bool,
 
-    /// Limit what WASM models may use; `htex fit --help` lists the names
+    /// Limit the resources of WASM models; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse, requires = "embedded_plugins")]
     wasm_limit: Vec<WasmLimit>,
 

@@ -6,12 +6,13 @@ use crate::output::write_bytes;
 
 /// Print a shell completion script
 ///
-/// For bash, source the script, or save it as ~/.local/share/bash-completion/completions/htex. For
-/// zsh, save it as _htex in a folder of fpath. For fish, save it as
-/// ~/.config/fish/completions/htex.fish. For PowerShell, append it to $PROFILE.
+/// For bash, source the script, or save the script as
+/// ~/.local/share/bash-completion/completions/htex. For zsh, save the script as _htex in a folder
+/// of fpath. For fish, save the script as ~/.config/fish/completions/htex.fish. For PowerShell,
+/// append the script to $PROFILE.
 #[derive(Args)]
 pub(crate) struct Completions {
-    /// The shell
+    /// The shell for which to print the script
     #[arg(value_enum)]
     shell: Shell,
 }

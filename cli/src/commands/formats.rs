@@ -10,8 +10,8 @@ use crate::output::show;
 
 /// List the formats to import and export
 ///
-/// For each format, prints which parts of a texture a file of this format keeps, and which parts
-/// are lost. Also lists the profiles of actuators for `htex export --profile`.
+/// For each format, prints which parts of a texture a file of this format keeps and which parts it
+/// loses. Also lists the profiles of actuators for `htex export --profile`.
 #[derive(Args)]
 pub(crate) struct Formats {
     /// Print JSON instead of lists

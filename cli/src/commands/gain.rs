@@ -46,8 +46,8 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
-    /// Store the gain under this name instead of the texture's name and author, e.g. because
-    /// another texture has the same name and author
+    /// Store the gain under this name, e.g. because another texture has the same name and author
+    /// [default: the texture's name and author]
     #[arg(long, value_name = "NAME")]
     texture: Option<String>,
 

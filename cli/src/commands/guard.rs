@@ -4,8 +4,8 @@ use htex_device::guardian::hold;
 use crate::devices::DeviceArgs;
 use crate::failure::{Exit, Result};
 
-/// Open a device for the process that started this command, and set its output to zero when that
-/// process ends (internal; `htex play` starts this command).
+/// Open a device for the process that started this command, and set the device's output to zero
+/// when that process ends (internal; `htex play` starts this command).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct Guard {

@@ -23,7 +23,7 @@ pub(crate) struct Plan {
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// Measure the times of the stages on this machine first, and store them for later plans
+    /// Measure the times of the stages on this machine first, and store these times for later plans
     #[arg(long)]
     measure: bool,
 

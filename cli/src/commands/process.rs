@@ -20,8 +20,8 @@ use crate::recordings::RecordingArgs;
 /// htex cuts the recording into segments of 0.2 s and computes the spectrum of each segment, with a
 /// Hann window. If the recording has several axes, htex combines their spectra into one spectrum
 /// (by the method DFT321). With --frf, htex divides the spectrum by the frequency response of the
-/// rig. It then averages the spectra of the segments. The result has a magnitude every 5 Hz from 20
-/// to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
+/// rig. Finally, htex averages the spectra of all segments. The result has a magnitude every 5 Hz
+/// from 20 to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
 #[derive(Args)]
 pub(crate) struct Process {
     #[arg(help = format!("The recording: {}", format_names()))]

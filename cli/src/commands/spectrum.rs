@@ -15,8 +15,8 @@ use crate::plugins::PlayerArgs;
 ///
 /// Prints the spectrum of one of the asset's models, from 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// These are the magnitudes that `htex process` would print for a long recording of the played
-/// texture, with its default --averaging rms. Outside the recorded speeds and forces, the
+/// The magnitudes are the same as the output of `htex process` for a long recording of the played
+/// texture (with the default --averaging rms). Outside the recorded speeds and forces, the
 /// magnitudes follow the law of the asset, i.e. its rule for speeds and forces that were not
 /// recorded.
 #[derive(Args)]

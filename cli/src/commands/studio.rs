@@ -27,9 +27,9 @@ const KEY: &str = "studio.key";
 ///
 /// The studio is a web page. htex serves the page on this machine only, until you press Ctrl-C. The
 /// command prints the address of the page, `http://NAME.localhost:8420/`. NAME depends on the
-/// folder and on a secret key that htex stores for you, so that other users of the machine cannot
-/// guess the address. Chromium, Edge and Firefox find this address. For another browser, such as
-/// Safari, add the line `127.0.0.1 NAME.localhost` to /etc/hosts.
+/// folder of the page and on a secret key that htex stores for you, so that other users of the
+/// machine cannot guess the address. Chromium, Edge and Firefox find this address. For another
+/// browser, such as Safari, add the line `127.0.0.1 NAME.localhost` to /etc/hosts.
 ///
 /// `cargo xtask studio --out DIR` builds the page. The page sends requests only to its own address.
 #[derive(Args)]
@@ -39,8 +39,8 @@ pub(crate) struct Studio {
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
-    /// Port of the address. The browser stores your textures for one port: with another port, it
-    /// does not find them. 0 selects any free port
+    /// Port of the address. The browser stores your textures separately for each port. 0 selects
+    /// any free port
     #[arg(long, default_value_t = PORT, value_name = "PORT")]
     port: u16,
 }

@@ -27,7 +27,7 @@ use crate::failure::{Failure, Result};
 /// Plan, run and analyse rating studies
 ///
 /// A file such as study.toml describes a study. `htex schema study` prints the JSON Schema of such
-/// files. The default values are those of the study in the paper.
+/// files. The default values come from the study in the paper.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]

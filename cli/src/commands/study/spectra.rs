@@ -28,9 +28,9 @@ pub(super) struct SpectraArgs {
     #[arg(long, value_name = "FILE", requires = "spectra")]
     study: Option<PathBuf>,
 
-    /// What to do with recordings of trials whose speed or force left the study's target by more
-    /// than 10 %. The recordings of textures have the same limit, but participants do not have to
-    /// keep within this limit
+    /// What to do with recordings of trials in which speed or force left the study's target by more
+    /// than 10 %. The limit is the same as for recordings of textures, but participants are not
+    /// asked to keep within it
     #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 

@@ -124,8 +124,8 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     })
 }
 
-/// [any thread] Frees an asset. Its voices continue to play. Returns HTEX_STATUS_BUSY if another
-/// thread is using the asset.
+/// [any thread] Frees an asset. Voices of this asset continue to play. Returns HTEX_STATUS_BUSY if
+/// another thread is using the asset.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
     guarded(|| ASSETS.remove(asset.id).map(drop))
@@ -133,9 +133,9 @@ pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
 
 /// [any thread] Writes the asset's whole manifest as JSON: name, conditions, representations,
 /// measured errors and so on. Writes at most `capacity` bytes to `out`, including a terminating
-/// zero. If the text is longer, `out` receives its beginning and the call returns
-/// HTEX_STATUS_TRUNCATED. `length` receives the length of the whole text without the zero, and may
-/// be NULL. If `capacity` is 0, only the length is written.
+/// zero. If the text needs more than `capacity` bytes, `out` receives the beginning of the text and
+/// the call returns HTEX_STATUS_TRUNCATED. `length` receives the length of the whole text without
+/// the zero, and may be NULL. If `capacity` is 0, only the length is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_manifest_json(
     asset: htex_asset,
@@ -267,13 +267,14 @@ pub unsafe extern "C" fn htex_asset_representation_model(
     })
 }
 
-/// [any thread; may load a model] Writes the spectrum that a recording of the voice would show: one
-/// magnitude, in the asset's unit, for each of the `len` frequencies in Hz. `model` is the id or
-/// short name of the representation's model; NULL selects the representation with the smallest
-/// error. `at` is the motion; NULL selects the first recorded condition, or the strongest one if
-/// the first is silent. Between recorded conditions, the magnitudes are interpolated. Outside them,
-/// the magnitudes follow the asset's law, which states how frequency and level change with speed
-/// and force. If the finger does not slide, they are 0.
+/// [any thread; may load a model] Writes the spectrum of the samples that a voice of this asset
+/// plays. `magnitude` receives one magnitude, in the asset's unit, for each of the `len`
+/// frequencies in Hz. `model` is the id or short name of the representation's model; NULL selects
+/// the representation with the smallest error. `at` is the motion; NULL selects the first recorded
+/// condition, or the strongest one if the first is silent. Between recorded conditions, the
+/// magnitudes are interpolated. Outside the recorded conditions, the magnitudes follow the asset's
+/// law, which states how frequency and level change with speed and force. While the finger does not
+/// slide, all magnitudes are 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(
     asset: htex_asset,

@@ -1,5 +1,5 @@
-//! Memory for the arguments and results of JavaScript (`sdk/bindings/web/src/core.js`), which has no other
-//! way to allocate any. Not part of the C interface.
+//! Functions with which JavaScript (`sdk/bindings/web/src/core.js`) allocates memory in the WASM
+//! module for the arguments and results of calls. They are not part of the C interface.
 
 #[cfg(feature = "library")]
 mod library;
@@ -13,7 +13,7 @@ pub extern "C" fn htex_alloc(bytes: usize) -> *mut u8 {
     allocate(bytes)
 }
 
-/// Frees memory from [`htex_alloc`]. The number of bytes must be the same.
+/// Frees memory from [`htex_alloc`]. `bytes` must be the number of bytes that was allocated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_free(at: *mut u8, bytes: usize) {
     // SAFETY: the caller says so.

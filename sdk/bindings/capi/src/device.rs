@@ -33,9 +33,9 @@ pub struct htex_device_counts {
 }
 
 /// [any thread; asks drivers] Writes a JSON array of the kinds of devices that this library can
-/// play on. Each has an `id`, a `name`, `endpoints` (the devices of this kind that are connected
-/// now) and a `problem`. `problem` is null, or states why the endpoints cannot be listed, for
-/// example what to install. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
+/// play on. Each entry has an `id`, a `name`, `endpoints` (the devices of this kind that are
+/// connected now) and a `problem`. `problem` is null, or states why the endpoints cannot be listed,
+/// for example what to install. `out`, `capacity` and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_list_json(
     out: *mut c_char,
@@ -67,10 +67,11 @@ pub unsafe extern "C" fn htex_device_info_json(
 /// [any thread; asks drivers] Opens a device, which is then at rest. `name` is its short name, such
 /// as `sdl`, `parametric`, `channels` or `file`, or its id. `settings` holds lines of the form
 /// NAME=VALUE; NULL selects the defaults. `rate_hz` is the sample rate; 0 selects the device's own.
-/// The device expects samples in the quantity that htex_device_info_json states. If it expects
-/// fractions of full scale, set the gain of the voice so that it converts the texture's newtons to
-/// them. This call refuses a display that is driven by a voltage: such a display needs a separate
-/// process that removes the voltage if the program dies, as `htex play` starts it.
+/// The samples must have the quantity and unit that htex_device_info_json states for the device. If
+/// the device expects fractions of full scale, set the gain of the voice so that it converts
+/// newtons to these fractions. This call refuses a finger display that is driven by a voltage. Such
+/// a display needs a separate process that removes the voltage if the program dies; use the command
+/// `htex play`, which starts this process.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_open(
     name: *const c_char,
@@ -89,10 +90,10 @@ pub unsafe extern "C" fn htex_device_rate_hz(device: htex_device, out: *mut f64)
     unsafe { calls::rate_hz(device, out) }
 }
 
-/// [one thread at a time; waits] Passes samples to a device. The device takes as many as it can
-/// within `timeout_ms`, and the call writes their number to `written`. The first samples start the
-/// device. If later samples arrive too late, the device goes to rest and the call fails. After an
-/// error it stays at rest.
+/// [one thread at a time; waits] Passes samples to a device. The device takes as many samples as it
+/// can within `timeout_ms`, and `written` receives the number of these samples. The first samples
+/// start the device. If later samples arrive too late, the device goes to rest and the call fails.
+/// After an error the device stays at rest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_write(
     device: htex_device,
@@ -105,8 +106,8 @@ pub unsafe extern "C" fn htex_device_write(
     unsafe { calls::write(device, samples, frames, timeout_ms, written) }
 }
 
-/// [one thread at a time] Writes how many samples the device has played, and its other counts. Set
-/// `out->size` before the call.
+/// [one thread at a time] Writes what the device has done since it was opened, for example how many
+/// samples it has played. Set `out->size` before the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_status(
     device: htex_device,
@@ -139,7 +140,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! Stand-ins for a library that is built without devices.
+    //! Versions of the device calls for builds without devices. Each one returns an error.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -1,13 +1,14 @@
 //! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h`
 //! is generated from this crate.
 //!
-//! - C refers to objects by handles, which are numbers. If a handle was freed, if a number was
-//!   never a handle, or if another thread is using the object, the call returns an error; it is not
-//!   undefined behaviour (`handles`).
+//! - C refers to objects by handles, which are numbers. A call returns an error if the object was
+//!   freed, if the number was never a handle, or if another thread is using the object. None of
+//!   these mistakes is undefined behaviour (`handles`).
 //! - A call returns a [`htex_status`]. [`htex_last_error`] returns the text of the calling thread's
 //!   last error. No call unwinds.
-//! - A struct of options begins with its size in bytes. Zero in any other field selects its
-//!   default, so programs that were compiled against an older header still run.
+//! - A struct of options begins with its size in bytes. In every other field, zero selects the
+//!   default. Fields that an older header lacks count as zero, so programs that were compiled
+//!   against that header still run.
 #![warn(missing_docs)]
 #![allow(non_camel_case_types)] // The names of the C header.
 #![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
@@ -31,8 +32,8 @@ mod shutdown;
 mod status;
 mod voice;
 
-/// Building blocks of the functions in this crate, for the functions that the module in
-/// `sdk/bindings/web/author` adds. Not part of the C interface.
+/// Helpers for writing C functions. The crate in `sdk/bindings/web/author` uses them for the
+/// function that it adds. They are not part of the C interface.
 #[doc(hidden)]
 pub mod calls {
     pub use crate::memory::{allocate, free};

@@ -1,5 +1,5 @@
 //! Libraries: files with thousands of textures. Without the feature `library`, and in browsers,
-//! each call returns an error that states this. Browsers have their own functions
+//! each call returns an error that states the reason. Programs in browsers use other functions
 //! (`browser/library.rs`).
 
 use std::ffi::c_char;
@@ -52,7 +52,8 @@ pub unsafe extern "C" fn htex_library_from_bytes(
 }
 
 /// [any thread; calls the reader] Opens a library whose bytes come from the program's own
-/// functions, `reader`. The struct is copied. The library calls its functions until it is freed.
+/// functions, `reader`. The call copies the struct `reader`. The functions in `reader` may be
+/// called until the library is freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
@@ -62,7 +63,7 @@ pub unsafe extern "C" fn htex_library_open_reader(
     unsafe { calls::open_reader(reader, out) }
 }
 
-/// [any thread] Frees a library. Assets that were opened from it stay open. Returns
+/// [any thread] Frees a library. Assets that were opened from the library stay open. Returns
 /// HTEX_STATUS_BUSY if another thread is using the library.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
@@ -153,7 +154,7 @@ pub(crate) use calls::clear;
 
 #[cfg(any(not(feature = "library"), target_family = "wasm"))]
 mod calls {
-    //! Stand-ins for a build without libraries.
+    //! Versions of the library calls for builds without libraries. Each one returns an error.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -18,10 +18,11 @@ pub fn allocate(bytes: usize) -> *mut u8 {
     layout(bytes).map_or(std::ptr::null_mut(), |layout| unsafe { alloc(layout) })
 }
 
-/// Frees memory from [`allocate`]. The number of bytes must be the same.
+/// Frees memory from [`allocate`]. `bytes` must be the number of bytes that was allocated.
 ///
 /// # Safety
-/// The pointer comes from [`allocate`] with the same number of bytes and was not freed, or is NULL.
+/// Either the pointer is NULL, or it comes from [`allocate`] with the same number of bytes and its
+/// memory was not freed before.
 pub unsafe fn free(at: *mut u8, bytes: usize) {
     if let Some(layout) = layout(bytes).filter(|_| !at.is_null()) {
         // SAFETY: as here.

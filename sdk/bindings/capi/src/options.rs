@@ -29,9 +29,9 @@ pub const HTEX_ENGINE_OFF: u32 = 0;
 /// access.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
 /// WASM modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
-/// stay installed after htex_shutdown. They pass on signals that do not come from a module. This is
-/// faster: for example, the model of `examples/model-c-bursts` takes 34 ns per sample instead of 42
-/// ns with HTEX_ENGINE_CHECKED.
+/// stay installed after htex_shutdown, and pass on all signals that do not come from a module.
+/// Modules run faster than with HTEX_ENGINE_CHECKED: for example, the model of
+/// `examples/model-c-bursts` takes 34 ns per sample instead of 42 ns.
 pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 
 /// Options for opening an asset or a scene. Set `size` to sizeof(htex_open_options), and all other
@@ -57,14 +57,15 @@ pub struct htex_open_options {
     pub plugins: *const *const c_char,
     /// Number of `plugins`.
     pub plugins_len: usize,
-    /// Models as WASM modules in memory. They run in a sandbox. The library uses the bytes only
-    /// during the call.
+    /// Models as WASM modules in memory. The modules run in a sandbox. The library uses the bytes
+    /// only during the call.
     pub modules: *const htex_bytes,
     /// Number of `modules`.
     pub modules_len: usize,
-    /// Folder that keeps compiled WASM modules; NULL to keep none. The library creates the folder,
-    /// so that only this user can access it. It also stores a key that authenticates the files in
-    /// the folder, as `wasm.key` in the user's settings folder, such as `~/.config/htex`.
+    /// Folder that keeps compiled WASM modules; NULL to keep none. The library creates the folder
+    /// with access for this user only. It also creates a key that authenticates the files in the
+    /// folder, and stores the key as `wasm.key` in the user's settings folder, such as
+    /// `~/.config/htex`.
     pub cache: *const c_char,
     /// If not 0, WASM modules that are embedded in assets do not run, even if an engine is turned
     /// on.
@@ -104,9 +105,10 @@ pub struct htex_voice_options {
     /// Number of bands that htex_voice_envelope returns, 1 to 32. 0 switches the envelope off,
     /// which saves its computing time.
     pub envelope_bands: u32,
-    /// If not 0, frequencies do not change any further at speeds outside the recorded range.
+    /// If not 0, frequencies do not follow the asset's law at speeds outside the recorded range.
     pub no_frequency_scaling: u32,
-    /// If not 0, the level does not change any further at forces outside the recorded range.
+    /// If not 0, the level does not follow the asset's law at speeds and forces outside the
+    /// recorded ranges.
     pub no_level_scaling: u32,
     /// If not 0, the voice also plays while the finger is at rest.
     pub no_contact: u32,

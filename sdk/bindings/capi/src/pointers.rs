@@ -1,6 +1,6 @@
-//! Converts C pointers to Rust values. The caller of a C function guarantees what the library
-//! cannot check: a pointer that is not NULL points to as many values as its length states, and the
-//! values stay valid during the call.
+//! Converts C pointers to Rust values. The library cannot check the following rule, so the caller
+//! of a C function must keep it. A pointer that is not NULL points to as many values as the length
+//! beside it states, and these values stay valid during the call.
 
 use std::ffi::{CStr, c_char};
 
@@ -9,7 +9,7 @@ use crate::status::{Failure, htex_status};
 /// Returns the values at `pointer`, or an empty slice for a length of 0.
 ///
 /// # Safety
-/// As the module says.
+/// The pointer must follow the rule in the module's documentation.
 pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Failure> {
     if len == 0 {
         // C may pass NULL or any address with a length of 0, which `from_raw_parts` does not allow.
@@ -23,7 +23,8 @@ pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Fai
 /// Does the same as [`slice`], for values that are written.
 ///
 /// # Safety
-/// As the module states. In addition, nothing else uses the values during the call.
+/// The pointer must follow the rule in the module's documentation. In addition, nothing else uses
+/// the values during the call.
 pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], Failure> {
     if len == 0 {
         return Ok(&mut []);
@@ -47,7 +48,7 @@ fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
 /// Returns a reference to the place that receives a result.
 ///
 /// # Safety
-/// As the module says.
+/// The pointer must follow the rule in the module's documentation.
 pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     if pointer.is_null() || !pointer.is_aligned() {
         return Err(Failure::argument("the pointer for the result is NULL or misaligned"));
@@ -59,7 +60,8 @@ pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
 /// Returns a text, or `None` for NULL.
 ///
 /// # Safety
-/// As the module says: the text ends with a zero byte.
+/// The pointer must follow the rule in the module's documentation, and the text must end with a
+/// zero byte.
 pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>, Failure> {
     if pointer.is_null() {
         return Ok(None);
@@ -75,7 +77,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>,
 /// Returns a text that must not be NULL.
 ///
 /// # Safety
-/// As `text`.
+/// The same rules as for `text` apply.
 pub unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as here.
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
@@ -105,7 +107,7 @@ pub(crate) unsafe fn wide_path(path: *const u16) -> Result<std::path::PathBuf, F
 /// `length` may be NULL. If `capacity` is 0, only the length is written.
 ///
 /// # Safety
-/// As the module says.
+/// The pointer must follow the rule in the module's documentation.
 pub(crate) unsafe fn write_text(
     text: &str,
     out: *mut c_char,

@@ -113,7 +113,8 @@ pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) ->
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the position and motion of
-/// the finger. This has an effect only in scenes with live motion.
+/// the finger. The call has an effect only if the scene's motion is `live`, which means that the
+/// program supplies it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,
@@ -124,9 +125,9 @@ pub unsafe extern "C" fn htex_scene_set_finger(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames` samples
-/// and writes their number to `rendered`. At the end of the scene, the number is smaller than
-/// `frames`. If a model fails, its surface becomes silent, the other surfaces play on, and the call
-/// returns the error.
+/// and writes their number to `rendered`. Fewer than `frames` samples are rendered at the end of
+/// the scene. If a model fails, its surface becomes silent, the other surfaces play on, and the
+/// call returns the error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_render(
     scene: htex_scene,
@@ -153,7 +154,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! Stand-ins for a library that is built without scenes.
+    //! Versions of the scene calls for builds without scenes. Each one returns an error.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -5,13 +5,14 @@ use crate::log::forget_log;
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::VOICES;
 
-/// [no other call may run in any thread] Frees everything, so that the library can be unloaded: all
-/// devices, which go to rest, then all scenes, voices, assets and libraries. It also ends the
-/// threads of the WASM engines and removes the function of htex_set_log. Existing handles become
-/// invalid, but new objects may be made afterwards. Constants of the models that were used stay in
-/// memory: 0.2 MB for all six built-in models, however often they are used. If an object is in use,
-/// the call returns HTEX_STATUS_BUSY, and frees neither the objects of the same kind nor anything
-/// that comes after them in the list above.
+/// [no other call may run in any thread] Frees all objects, so that the library can be unloaded.
+/// The call brings all devices to rest and frees them, and then frees all scenes, voices, assets
+/// and libraries, in this order. It also ends the threads of the WASM engines and removes the
+/// function that was set with htex_set_log. Existing handles become invalid, but new objects may be
+/// made afterwards. Constants of the models that were used stay in memory: 0.2 MB for all six
+/// built-in models, however often they are used. If an object is in use, the call returns
+/// HTEX_STATUS_BUSY. Objects of the same kind, and of the kinds that come later in this order, are
+/// then not freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_shutdown() -> htex_status {
     guarded(|| {

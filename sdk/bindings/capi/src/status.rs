@@ -5,8 +5,7 @@ use std::ffi::{CStr, c_char};
 use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Status of a call. All values except HTEX_STATUS_OK are errors. Later versions may return other
-/// values than these.
+/// Status of a call. All values except HTEX_STATUS_OK are errors. Later versions may add values.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum htex_status {
@@ -56,7 +55,7 @@ pub struct Failure {
 #[derive(Debug)]
 enum Text {
     Plain(&'static str),
-    /// Not boxed, so that calls in a real-time thread can fail without allocating.
+    /// This error is not boxed, so that calls in a real-time thread can fail without allocating.
     Playing(htex::Error),
     #[cfg(feature = "scene")]
     Scene(htex::scene::SceneError),
@@ -177,8 +176,8 @@ fn remember(text: &Text) {
 }
 
 /// [any thread] Returns the text of the calling thread's last error, in English; empty if there was
-/// no error. It is UTF-8, and at most 1023 bytes long. It is valid until the thread's next call
-/// that fails. A successful call does not change it.
+/// no error. The text is UTF-8, and at most 1023 bytes long. The text is valid until the thread's
+/// next call that fails. A successful call does not change the text.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_last_error() -> *const c_char {
     LAST.with(|last| last.get().cast::<c_char>().cast_const())

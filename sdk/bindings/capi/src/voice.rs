@@ -97,8 +97,9 @@ pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
 }
 
 /// [one thread at a time; not the real-time thread] Restarts a voice with the same options and the
-/// same handle. The voice then gives the same samples as a new voice. It starts at `motion`, or at
-/// the motion in its options if `motion` is NULL. After an error the voice plays on as before.
+/// same handle. The voice then gives the same samples as a new voice. The voice starts at `motion`,
+/// or at the motion in its options if `motion` is NULL. If the call fails, the voice is not
+/// restarted and continues to play.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_reset(
     voice: htex_voice,
@@ -118,9 +119,9 @@ pub unsafe extern "C" fn htex_voice_reset(
     })
 }
 
-/// [one thread at a time] Writes the id of the model that plays. It is the model in the voice's
-/// options, or the model that the library chose if the options name none. `out`, `capacity` and
-/// `length` work as in htex_asset_manifest_json.
+/// [one thread at a time] Writes the id of the model that plays. This is the model that the voice's
+/// options name, or the model that the library chose if the options name none. `out`, `capacity`
+/// and `length` work as in htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_model(
     voice: htex_voice,
@@ -156,8 +157,8 @@ pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) 
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
-/// Spectrum and level change gradually to the new motion. After an error the voice plays on as
-/// before.
+/// Spectrum and level change gradually to the new motion. If the call fails, the voice continues to
+/// play the previous motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_set_motion(
     voice: htex_voice,
@@ -188,7 +189,7 @@ pub unsafe extern "C" fn htex_voice_render(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames`
-/// samples, multiplies them by `gain` and adds them to `out`. This mixes several voices.
+/// samples, multiplies them by `gain` and adds them to `out`. Use this call to mix several voices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_add(
     voice: htex_voice,
@@ -208,13 +209,14 @@ pub unsafe extern "C" fn htex_voice_render_add(
 /// frequency of what the voice played since the last call, after effects, gain and limit. Use it
 /// for phones, pads and motors that receive a level and a frequency instead of samples. `bands`
 /// receives the mean square of the samples in each of the voice's `envelope_bands`, in the asset's
-/// unit squared. It may be NULL if `bands_len` is 0.
+/// unit squared. `bands` may be NULL if `bands_len` is 0.
 ///
 /// The level is exact. The mean frequency and the bands are computed from Hann windows of N
 /// samples, where N is the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A new
-/// window ends every N / 4 samples. Its middle is N / 2 samples before its end, so these values are
-/// late by N / 2 samples. A call returns the mean over the windows that ended since the last call.
-/// If none ended, it returns the same values as the last call.
+/// window ends every N / 4 samples. A window describes the sound at its middle, so the mean
+/// frequency and the bands are late by N / 2 samples. A call returns the mean over the windows that
+/// ended since the last call. If no window ended since then, the call returns the same values as
+/// the last call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope(
     voice: htex_voice,
@@ -241,8 +243,8 @@ pub unsafe extern "C" fn htex_voice_envelope(
 
 /// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz. `len` must be
 /// the number of bands plus one. The edges go from the lowest to the highest frequency of the
-/// asset, spaced by equal ratios. The first band also includes everything below, down to 0 Hz. The
-/// last band also includes everything above, up to half the sample rate.
+/// asset, spaced by equal ratios. The first band also includes all frequencies below it, down to 0
+/// Hz. The last band also includes all frequencies above it, up to half the sample rate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope_edges(
     voice: htex_voice,
@@ -265,9 +267,9 @@ pub unsafe extern "C" fn htex_voice_envelope_edges(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames`
-/// samples for each of `motions_len` motions, in total `motions_len * frames` samples. Sets each
-/// motion just before its block. Stops at the first error, and then leaves the rest of `out`
-/// unchanged.
+/// samples for each of `motions_len` motions, in total `motions_len * frames` samples. The call
+/// sets each motion just before it renders the block of this motion. It stops at the first error
+/// and leaves the remaining samples in `out` unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_path(
     voice: htex_voice,

@@ -1,5 +1,6 @@
-//! Stores exceptions from models that are written in Python. The host passes on only an exception's
-//! text. The exception that is finally raised to the user gets the stored one as its cause.
+//! Stores exceptions from models that are written in Python. The host passes on only the text of an
+//! exception. So the package raises a new exception to the user, and sets the stored exception as
+//! its cause.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};

@@ -9,9 +9,9 @@ use crate::python::zeros;
 
 /// A speed, force or position along a path: one number for all blocks, or one for each block.
 pub(crate) enum Series {
-    /// One number.
+    /// The same number for all blocks.
     Constant(f64),
-    /// A number for each block.
+    /// One number for each block.
     Each(Vec<f64>),
 }
 

@@ -2,8 +2,8 @@
 //! interpreter lock.
 //!
 //! Each model is an object that implements [`RuntimeModel`]. The host checks its arguments and
-//! results as for any other model. Exceptions pass through the host only as texts. The exception
-//! that is finally raised gets the original one as its cause.
+//! results as for any other model. The host passes on only the text of an exception. So the package
+//! raises a new exception to the user, and sets the original exception as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -21,7 +21,7 @@ use crate::python::parsed;
 /// A recording: a file, or the name and the bytes of a file.
 #[derive(FromPyObject)]
 pub(crate) enum Source {
-    /// A name, and bytes.
+    /// The name of a file, and its bytes.
     Bytes(String, PyBackedBytes),
     /// A path.
     #[pyo3(transparent)]

@@ -32,8 +32,8 @@ impl Display for DeviceName {
 }
 
 /// Runs all checks of a device, each check in its own process. `runner` is a program that calls
-/// [`run_one`]. It gets its own arguments, which name the device and its settings, and then the
-/// name of the check.
+/// [`run_one`]. The program's arguments are the ones in `runner`, which name the device and its
+/// settings, and then the name of the check.
 pub fn check(device: &str, subject: &Subject, runner: &Runner) -> Report {
     let direction = match subject {
         Subject::Builtin(adapter) => Some(adapter.descriptor().direction),

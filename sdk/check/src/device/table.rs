@@ -6,8 +6,8 @@ use crate::device::case::Case;
 use crate::device::checks::{describe, end, limit, open, read, write};
 use crate::harness::Check;
 
-/// Returns the checks for devices of a direction. Without a direction, returns the checks that
-/// apply to both.
+/// Returns the checks for devices of a direction (output or input). Without a direction, returns
+/// the checks that apply to both directions.
 pub fn checks_of(direction: Option<Direction>) -> impl Iterator<Item = &'static Check<Case>> {
     CHECKS.iter().filter(move |check| {
         check.only.is_empty() || direction.is_some_and(|direction| check.only.contains(&direction))

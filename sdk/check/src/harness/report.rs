@@ -18,7 +18,7 @@ pub struct CheckReport {
 /// the settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report<Subject> {
-    /// The model or device. In JSON, the subject's fields stand next to `ok`.
+    /// The model or device. In JSON, the subject's fields are at the same level as `ok`.
     #[serde(flatten)]
     pub subject: Subject,
     /// Whether no check failed, crashed or timed out.

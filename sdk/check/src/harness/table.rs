@@ -12,10 +12,11 @@ pub struct Check<Case> {
     pub summary: &'static str,
     /// The test method with its tolerances; empty if the summary is sufficient.
     pub method: &'static str,
-    /// The only direction of devices to which the check applies. If empty, it applies to both.
+    /// The direction of devices (output or input) to which the check is limited. If empty, the
+    /// check applies to both directions.
     pub only: &'static [Direction],
-    /// Names of the checks that this check needs: its result is meaningful only if they do not
-    /// fail.
+    /// Names of the checks that this check needs. The result of this check is meaningful only if
+    /// the named checks do not fail.
     pub needs: &'static [&'static str],
     pub run: fn(&Case) -> CheckResult,
 }

@@ -2,19 +2,19 @@
 //!
 //! The dynamic linker writes the addresses of `malloc` and related functions into a table of each
 //! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces these addresses
-//! with the addresses of functions that count each call and then call the allocator. It does this
-//! in every library of the process, including the C library and the C++ runtime. So `new`, `strdup`
-//! and the `Vec` of a Rust library are also counted. Each thread has its own count. The table of
-//! the program itself is not changed, so the host's own allocations are not counted.
+//! with the addresses of functions that count each call and then call the allocator. It replaces
+//! them in every library of the process, including the C library and the C++ runtime. So `new`,
+//! `strdup` and the `Vec` of a Rust library are also counted. Each thread has its own count. The
+//! table of the program itself is not changed, so the host's own allocations are not counted.
 //!
-//! This method does not detect an allocator that a library links statically and that maps pages
-//! itself, calls through an address from `dlsym`, libraries that are loaded after `watch`, and
-//! threads that a library starts.
+//! This method does not detect allocations by an allocator that is linked statically into a library
+//! and maps pages itself, or calls to an address that `dlsym` returned. It also does not detect
+//! calls in libraries that are loaded after `watch`, or in threads that a library starts.
 //!
 //! Other methods were rejected. Comparing the heap before and after does not show memory that was
-//! allocated and freed in between. A replaced `malloc` would also be part of all other commands. A
-//! preloaded library would be a second file to install. For a WASM module, only the growth of its
-//! memory is visible.
+//! allocated and freed in between. If the program defined its own `malloc`, all other commands of
+//! the program would use it. A preloaded library would be a second file to install. For a WASM
+//! module, only the growth of its memory is visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;

@@ -61,7 +61,7 @@ pub struct Cost {
     /// Overhead of a call, ns: the minimum time of a call for one sample, minus the minimum time of
     /// a sample in a large block.
     pub per_call_ns: f64,
-    /// Time to the first sample; only for a WASM module.
+    /// Time to the first sample, measured only for WASM modules.
     pub start: Option<Start>,
 }
 

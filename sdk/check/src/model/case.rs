@@ -29,7 +29,7 @@ pub struct Case {
     pub(crate) model: LoadedModel,
     pub(crate) seed: u64,
     pub(crate) against: Option<PathBuf>,
-    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, the check plays a fixed number of sequences.
     pub(crate) fuzz: Option<Duration>,
 }
 
@@ -40,7 +40,7 @@ pub struct Settings<'a> {
     pub seed: u64,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<&'a Path>,
-    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, the check plays a fixed number of sequences.
     pub fuzz: Option<Duration>,
 }
 

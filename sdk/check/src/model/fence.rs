@@ -1,5 +1,5 @@
-//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. They detect and
-//! name a call that reads or writes beyond an array.
+//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. They detect that a
+//! call reads or writes beyond an array, so that the checker can name this call.
 
 use crate::harness::Finding;
 

@@ -1,8 +1,8 @@
 //! Memory that ends at the end of a page and has protected pages behind it (a fence). A signal
 //! handler names the call that touched a fence.
 //!
-//! A debugger's allocator or an instrumented build would be alternatives. But a model must be
-//! checked as it is shipped.
+//! A debugger's allocator or an instrumented build could also detect such accesses. But the checker
+//! must test the same file that is shipped.
 #![allow(unsafe_code)] // Pages and signals are calls of the system.
 
 use std::ffi::c_void;

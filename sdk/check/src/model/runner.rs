@@ -12,8 +12,9 @@ use crate::model::table::CHECKS;
 
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. After its own arguments it gets the file, the name of the
-    /// check, and the options for the seed and, if there is one, for the other file.
+    /// A program that calls [`run_one`]. The program receives its own arguments, then the model's
+    /// file, the name of the check, and the option for the seed. If there is a second file to
+    /// compare with, the option for this file follows.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
@@ -21,7 +22,7 @@ pub struct Options {
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,
-    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, the check plays a fixed number of sequences.
     pub fuzz: Option<Duration>,
 }
 

@@ -3,8 +3,8 @@
 //! - [`finding`]: results of validation, with rules, reports and hints.
 //! - [`files`]: files that are written completely or not at all, and safe access to files and
 //!   folders that come from somebody else.
-//! - `storage`: reads and writes files by URI. It needs the feature `storage`; web servers and
-//!   object stores need the feature `cloud`.
+//! - `storage`: reads and writes files by URI. This module needs the feature `storage`. Access to
+//!   web servers and object stores needs the feature `cloud`.
 //! - [`schema`]: JSON Schemas made from Rust types, and checks against them.
 //! - [`native`]: native libraries, loaded from files or by name.
 //! - [`setters!`]: methods that set the fields of options.

@@ -1,10 +1,10 @@
 //! All-pole filter that runs as a direct form while its coefficients are constant, and as a lattice
 //! while they change. The direct form is fast; the lattice stays stable.
 //!
-//! The direct form computes four samples at a time. Once the coefficients have been constant for as
-//! many samples as the lattice has stages, both forms are equal up to rounding. The lattice moves
-//! from one filter to another by interpolating their line spectral frequencies, because every
-//! filter in between is then stable.
+//! The direct form computes four samples at a time. The lattice and the direct form give the same
+//! output, up to rounding, once the coefficients have been constant for as many samples as the
+//! lattice has stages. The lattice moves from one filter to another by interpolating their line
+//! spectral frequencies, because every filter in between is then stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -25,10 +25,11 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 /// (f64 state).
 ///
 /// While the coefficients are constant, the filter computes four samples at a time (transposed
-/// direct form II, the recursion unrolled for four samples). While they change it runs as a
-/// lattice, which is stable if each reflection coefficient is inside (-1, 1). The switch from the
-/// lattice to the direct form is inaudible: after as many samples with constant coefficients as the
-/// lattice has stages, its state depends only on its last outputs.
+/// direct form II, the recursion unrolled for four samples). While the coefficients change, the
+/// filter runs as a lattice, which is stable if each reflection coefficient is inside (-1, 1). The
+/// switch from the lattice to the direct form is inaudible. It happens after as many samples with
+/// constant coefficients as the lattice has stages, when the state of the lattice depends only on
+/// its last outputs.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;

@@ -1,4 +1,4 @@
-//! Steep filters at the edges of the band, for noise that is generated with a wider spectrum.
+//! Steep filters that restrict noise to the band, if the noise is generated with a wider spectrum.
 //!
 //! A filter changes the RMS by up to 2 %, because of its ripple, and because half of the bin at the
 //! Nyquist frequency is missing. So a model that uses these filters computes its level after the
@@ -29,9 +29,9 @@ const BESIDE: f64 = 0.5;
 
 /// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. They are Chebyshev
 /// filters. Inside the band, at a distance of an eighth of the edge's frequency or more from each
-/// edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, it is 3 dB
-/// down. An edge at or above the Nyquist frequency gets no filter. The output is delayed by some
-/// samples ([`Pipeline`]).
+/// edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, the magnitude
+/// is 3 dB down. An edge at or above the Nyquist frequency gets no filter. The output is delayed by
+/// some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -57,10 +57,10 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// A table over frequency: the part of a noise's power that passes [`band_limit`] and that the bins
-/// of the band measure. It covers each grid bin in the band and some bins outside. Bins near the
-/// edges are subdivided. If a bin contains the Nyquist frequency, only its part below that
-/// frequency counts.
+/// A table that states, for each frequency, which part of a noise's power passes [`band_limit`] and
+/// is measured by the bins of the band. The table covers each grid bin in the band and some bins
+/// outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only its
+/// part below that frequency counts.
 ///
 /// The table corrects the level of filtered noise. Without the correction, the noise would be too
 /// weak for three reasons: the filters' ripple, the part of the highest bin above the Nyquist
@@ -134,8 +134,9 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// Returns the RMS, as [`Self::level_rms`] does, of white noise that has a magnitude of 1 in
-    /// each bin and passes the filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate. Does not allocate.
+    /// Returns the RMS of white noise after the all-pole filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate,
+    /// measured as [`Self::level_rms`] does. Before the filter, the noise has a magnitude of 1 in
+    /// each bin. Does not allocate.
     pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
         let mut power = 0.0;
         wide(AllPolePower { turns: &self.turns, coefficients, power: &mut power });

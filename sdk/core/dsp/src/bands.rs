@@ -68,8 +68,8 @@ impl BandBank {
 
 /// Error of each band in dB, from band *energies*: `10 log10((model + tiny) / (reference + tiny))`,
 /// where `tiny` is 1e-12 of the largest reference band. If all energies of the model and the
-/// reference are zero, the errors are 0 dB. If only the reference is zero everywhere, the errors
-/// are +∞ in the bands in which the model has energy.
+/// reference are zero, the errors are 0 dB. If all energies of the reference are zero, but some
+/// energies of the model are not, the errors are +∞ in the bands in which the model has energy.
 pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
     let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
     reference

@@ -45,8 +45,8 @@ pub fn low_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::LowPass, order, fc_hz, rate_hz)
 }
 
-/// Returns high-pass sections. The arguments are the same as for [`low_pass`], and so are the cases
-/// in which the result is `None`.
+/// Returns high-pass sections. The arguments are the same as for [`low_pass`], and the result is
+/// `None` in the same cases.
 pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::HighPass, order, fc_hz, rate_hz)
 }

@@ -3,13 +3,14 @@
 //! The level is the exact RMS of the samples of a block, and has no delay. Mean frequency and bands
 //! are computed from periodic Hann windows of `N` samples, where `N` is the smallest power of two
 //! that lasts at least 40 ms (at 20 kHz: 1024 samples, 51.2 ms; at 48 kHz: 2048, 42.7 ms). One
-//! window ends every `N / 4` samples. Samples before the first one are 0.
+//! window ends every `N / 4` samples. Before the first sample, the stream counts as 0.
 //!
 //! Let `X[k]` be the transform of the windowed samples, and `W` the sum of the squared window. Bin
 //! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`; all bins but the first and the last
 //! count twice. The powers of all bins then add up to the mean square of the windowed samples,
 //! divided by the mean square of the window. The result for a block is the mean over the windows
-//! that end in the block. If no window ends in it, the result is the same as for the block before.
+//! that end in the block. If no window ends in the block, the result of the previous block is
+//! repeated.
 
 use alloc::vec::Vec;
 
@@ -128,9 +129,10 @@ impl Analyser {
         self.bands.len()
     }
 
-    /// Returns the edges of the bands, ascending, hertz; there is one more edge than bands.
-    /// Although the list starts and ends with the edges of `band`, the first band also contains all
-    /// lower frequencies, down to 0 Hz, and the last band all higher ones, up to half the rate.
+    /// Returns the edges of the bands, ascending, hertz; there is one more edge than bands. The
+    /// list starts and ends with the edges of `band`. Nevertheless, the first band also contains
+    /// all lower frequencies, down to 0 Hz, and the last band also contains all higher frequencies,
+    /// up to half the rate.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }

@@ -1,8 +1,8 @@
 //! Linear prediction from signals: Yule–Walker, Burg and covariance method.
 //!
-//! Each method takes several segments of one random process and adds up their sums. It applies no
-//! window, and no prediction crosses a boundary between segments. For a single signal, pass
-//! `&[signal]`. Segments that are not longer than the order contribute nothing.
+//! Each method takes several segments of one random process, and computes its sums over all
+//! segments. No window is applied, and no prediction crosses a boundary between segments. For a
+//! single signal, pass `&[signal]`. Segments that are not longer than the order contribute nothing.
 
 use alloc::vec::Vec;
 

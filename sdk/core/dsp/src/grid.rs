@@ -1,10 +1,11 @@
 //! The band of a texture, and the grid of frequencies on which its spectrum is given.
 //!
 //! A spectrum has unit RMS if the RMS computed from the bins in the band is 1. Bins outside the
-//! band do not count, although the window spreads a component at 20 Hz partly into them. If they
-//! counted, recording and fitting a rendered texture with much energy at 20 Hz would lower its
-//! level by up to 0.1 dB each time. With this definition, three such copies in a row stay within
-//! 0.1 dB (300 s of samples).
+//! band do not count, although the window spreads a component at 20 Hz partly into them. Suppose
+//! that a texture is rendered, and the samples are fitted again to make a copy. If the bins outside
+//! the band counted, each copy of a texture with much energy at 20 Hz would lose up to 0.1 dB of
+//! its level. With this definition, the level stays within 0.1 dB over three successive copies (300
+//! s of samples).
 
 use alloc::vec::Vec;
 
@@ -66,8 +67,8 @@ impl Band {
 /// Hann window. It is 1 well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin
 /// and the first bin outside, and 0 far outside.
 ///
-/// A component near an edge also has power in bins outside the band, which do not count. Generators
-/// of noise amplify it to compensate for this loss.
+/// A component near an edge also has power in bins outside the band, which do not count. Noise
+/// generators amplify such a component to compensate for this loss.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).part_at(frequency_hz)
 }

@@ -1,6 +1,7 @@
-//! Texture libraries whose bytes JavaScript fetches (`sdk/bindings/web/src/htexlib.js`). The code
-//! here states which bytes it needs next, and JavaScript fetches them and passes them in. Offsets
-//! are doubles, as in JavaScript, so a file must have fewer than 2^53 bytes.
+//! Texture libraries whose bytes JavaScript fetches (`sdk/bindings/web/src/htexlib.js`). This code
+//! tells JavaScript which bytes it needs next. JavaScript fetches these bytes and passes them to
+//! [`htex_index_give`]. Offsets are doubles, as in JavaScript, so a file must have fewer than 2^53
+//! bytes.
 
 use std::ffi::c_char;
 use std::ops::Range;
@@ -70,8 +71,8 @@ pub extern "C" fn htex_index_free(index: u64) -> htex_status {
     guarded(|| INDEXES.remove(index).map(drop))
 }
 
-/// Writes which bytes are needed next to open the library: the offsets of their start and end. Both
-/// are equal once the library is open.
+/// Writes which bytes are needed next to open the library: the offsets of their start and end. The
+/// two offsets are equal once the library is open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
     guarded(|| {
@@ -85,8 +86,8 @@ pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_st
     })
 }
 
-/// Passes in the requested bytes, or fewer if the file ends earlier. `file_bytes` is the size of
-/// the whole file.
+/// Gives the library the bytes that htex_index_wanted requested, or fewer bytes if the file ends
+/// earlier. `file_bytes` is the size of the whole file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_give(
     index: u64,
@@ -132,8 +133,8 @@ pub unsafe extern "C" fn htex_index_json(
     })
 }
 
-/// Writes the number of the only index page that can list a texture with this name. If no page can,
-/// returns HTEX_STATUS_ABSENT.
+/// Writes the number of the only index page that can list a texture with this name. Returns
+/// HTEX_STATUS_ABSENT if no page can list such a texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_page_of(
     index: u64,
@@ -268,8 +269,9 @@ unsafe fn write_entries(
     unsafe { write_text(&json, out, capacity, length) }
 }
 
-/// Writes the byte ranges in the file that make up a texture of the current page: the start and end
-/// of each, for at most `capacity` ranges. `length` receives the number of all its ranges.
+/// Writes which byte ranges of the file contain a texture of the current page. `out` receives the
+/// start and end of each range, for at most `capacity` ranges. `length` receives the number of all
+/// ranges of the texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_ranges(
     index: u64,
@@ -294,7 +296,7 @@ pub unsafe extern "C" fn htex_index_ranges(
 }
 
 /// Assembles a texture of the current page, and checks its hash. `bytes` holds the bytes of the
-/// texture's ranges, one range after the other. `out` must have room for as many bytes.
+/// texture's ranges, one range after the other. `out` must have room for `len` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_assemble(
     index: u64,

@@ -14,7 +14,8 @@ use crate::status::{Failure, guarded, htex_status};
 use crate::voice::{VOICES, htex_voice};
 
 /// Writes the full model id of the representation that `model` selects by its id or short name. If
-/// `model` is NULL, writes the id of the representation that a voice would choose. Loads no model.
+/// `model` is NULL, the call writes the model id of the representation that a new voice plays by
+/// default. The call loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_chosen_model(
     asset: htex_asset,
@@ -33,7 +34,7 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
 }
 
 /// Writes the index of the condition at which a representation plays if no motion is given. `model`
-/// works as in htex_asset_magnitude. Loads no model.
+/// works as in htex_asset_magnitude. The call loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_default_condition(
     asset: htex_asset,
@@ -50,8 +51,8 @@ pub unsafe extern "C" fn htex_asset_default_condition(
     })
 }
 
-/// Writes the asset's law as JSON, in the form of the manifest. The law states how frequency and
-/// level change with speed and force.
+/// Writes the asset's law as JSON, in the same form as in the manifest. The law states how
+/// frequency and level change with speed and force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_law_json(
     asset: htex_asset,
@@ -68,8 +69,9 @@ pub unsafe extern "C" fn htex_asset_law_json(
     })
 }
 
-/// Writes the parameters of a representation at a motion, as a JSON object: each name has a number
-/// or a list of numbers. `model` and `at` work as in htex_asset_magnitude.
+/// Writes the parameters of a representation at a motion, as a JSON object. For each parameter's
+/// name, the object contains a number or a list of numbers. `model` and `at` work as in
+/// htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_parameters_json(
     asset: htex_asset,
@@ -97,9 +99,10 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
     })
 }
 
-/// Writes the spectrum that a recording of a representation's voice would show at a recorded
-/// condition. The frequencies are those of the grid of the asset's band, and `len` must be their
-/// number. `condition` is an index that starts at 0.
+/// Writes the spectrum that would be measured in samples played from a representation at a recorded
+/// condition. `magnitude` receives one magnitude for each frequency on the grid of the asset's
+/// band, and `len` must be the number of these frequencies. `condition` is an index that starts at
+/// 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_read_magnitude(
     asset: htex_asset,
@@ -144,8 +147,8 @@ fn read_magnitude(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Writes the spectrum that a recording of a voice would show at its current motion: one magnitude
-/// for each frequency in Hz. Both arrays may be the same one.
+/// Writes the spectrum of the samples that a voice plays at its current motion: one magnitude for
+/// each frequency in Hz. `frequency_hz` and `magnitude` may point to the same array.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_magnitude(
     voice: htex_voice,
@@ -164,7 +167,7 @@ pub unsafe extern "C" fn htex_voice_magnitude(
 }
 
 /// Writes, as JSON, how a voice plays a motion, and whether the motion lies within the recorded
-/// conditions. If `motion` is NULL, it is the voice's current motion.
+/// conditions. NULL for `motion` selects the voice's current motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage_json(
     voice: htex_voice,

@@ -1,4 +1,5 @@
-//! The C function of this module, and the functions that it calls by their names.
+//! The C function of this WASM module, and the table of the functions that JavaScript calls with it
+//! by name.
 
 use std::ffi::c_char;
 
@@ -35,11 +36,11 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
     crate::scene::FUNCTIONS,
 ];
 
-/// Calls the function with this name, and passes it a JSON document and the bytes of files. A call
-/// that fails also writes a result.
+/// Calls the function with this name, and passes it a JSON document and the bytes of files. If the
+/// called function fails, `out` receives a JSON document that describes the error.
 ///
 /// # Safety
-/// The pointers must be valid during the call. `out` is written.
+/// The pointers must be valid during the call, and nothing else may use `out` during it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_author_call(
     name: *const c_char,

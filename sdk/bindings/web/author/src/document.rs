@@ -1,7 +1,7 @@
 //! The documents of calls: JSON objects. Functions take entries out of them by name.
 //!
-//! Only the tables of settings use `serde`'s derived code, because it takes a kilobyte or more for
-//! each struct.
+//! Only the tables of settings are read with code that `serde` derives, because derived code adds a
+//! kilobyte or more to the module for each struct.
 
 #[cfg(feature = "make")]
 use serde::de::DeserializeOwned;

@@ -1,12 +1,13 @@
 //! The WASM modules of the npm package, except the player. Each module is libhtex with one
 //! additional C function, [`htex_author_call`]. There are three builds. `htex-author.wasm` makes
-//! textures (feature `make`). `htex-import.wasm` also makes them from files of other haptic formats
-//! (feature `import`). `htex-scene.wasm` plays scenes (feature `scene`). Only JavaScript calls the
-//! function: `sdk/bindings/web/src/author.js`, `import.js` and `scene.js`.
+//! textures (feature `make`). `htex-import.wasm` makes textures from recordings and also from files
+//! of other haptic formats (feature `import`). `htex-scene.wasm` plays scenes (feature `scene`).
+//! Only the JavaScript in `sdk/bindings/web/src` calls the function: `author.js`, `import.js` and
+//! `scene.js`.
 //!
-//! A call passes a name, a JSON document and the bytes of files. It returns a JSON document and
-//! bytes. With this single function, JavaScript need not know the layout of structs. The overhead
-//! is some microseconds, little compared with the work of a call.
+//! JavaScript passes the name of a function, a JSON document and the bytes of files. The call
+//! returns a JSON document and bytes. With this single function, JavaScript need not know the
+//! layout of structs. The overhead is some microseconds, little compared with the work of a call.
 //! `sdk/bindings/web/src/author.d.ts` and `import.d.ts` define the names, documents and results.
 
 mod answer;

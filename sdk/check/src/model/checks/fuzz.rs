@@ -1,8 +1,10 @@
 //! Checks random but valid use of voices.
 //!
-//! A seed determines parameters, a band, a sample rate and a sequence of blocks, retunes, mixes and
-//! motions. The sequence is played twice, divided into different blocks. The samples must be
-//! finite, and the same both times. A failure names its seed, so that it can be reproduced.
+//! From a seed, the check derives parameters, a band, a sample rate and a sequence of steps. A step
+//! renders a block, retunes the voice to new parameters or to a mix of two parameter sets, or sets
+//! a motion. The sequence is played twice, divided into different blocks. The samples must be
+//! finite, and the same both times. The finding of a failure contains the seed, so that the failure
+//! can be reproduced.
 
 use std::time::Instant;
 
@@ -30,8 +32,8 @@ const LOUDEST: f32 = 1e4;
 enum Step {
     Render(usize),
     Retune(Vec<f64>),
-    /// Retune to a mix of two parameter sets, which are concatenated. The number is the weight of
-    /// the second set.
+    /// Retune to a mix of two parameter sets. The list contains one set after the other, and the
+    /// number is the weight of the second set.
     Mix(Vec<f64>, f64),
     Move(Motion),
 }

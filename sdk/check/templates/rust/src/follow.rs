@@ -1,8 +1,9 @@
-//! A voice that follows the finger itself, by the extension `htex.motion/1`. A host then scales
-//! neither frequencies with the speed nor the level with the force.
+//! A voice that receives the finger's motion through the extension `htex.motion/1`. Such a voice
+//! must change its sound with speed and force itself, because the host does not scale its
+//! frequencies and level.
 //!
 //! In this template the level is proportional to the speed, and 1 at 100 mm/s. A model may also use
-//! the position, for example for a pattern that is fixed to the surface;
+//! the position, for example for a pattern that is fixed to the surface. While the model is fitted,
 //! [`FitInput::condition`](htex_model::FitInput) contains the speed and force of the recording.
 
 use htex_model::shaped::ShapedVoice;

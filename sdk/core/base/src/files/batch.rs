@@ -1,10 +1,10 @@
-//! Writes many files at once. As with a single file, each file is written completely or not at all.
-//! But the program waits for the disk only once per group of files.
+//! Writes many files at once. Each file is written completely or not at all. To save time, the
+//! files are flushed to disk in large groups instead of one by one.
 //!
-//! A flush takes the disk some milliseconds, so two flushes for each file would take minutes for
-//! 100,000 files. Instead, the program writes all files of a group next to their targets. Then it
-//! flushes the file system (on Linux; on other systems, each file). Then it renames all files to
-//! their targets.
+//! A flush takes the disk some milliseconds. With two flushes per file, 100,000 files would take
+//! minutes. Instead, the program first writes all files of a group under temporary names in the
+//! folders of their targets. Then, on Linux, it flushes the whole file system once; on other
+//! systems it flushes each file. At the end it renames all files to their targets.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -17,8 +17,8 @@ use crate::files::{Readers, Target, folder, sync_folder, unfinished};
 /// Number of files in a group.
 const GROUP: usize = 32_768;
 
-/// A batch of files that are being written. If it is dropped before [`Self::finish`], it removes
-/// the files that were not yet renamed to their targets.
+/// A batch of files that are being written. If a batch is dropped before [`Self::finish`], it
+/// removes the files that were not yet renamed to their targets.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -37,11 +37,11 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Writes a file. The file is at `path` after [`Self::finish`], or earlier.
+    /// Writes a file. The file appears at `path` when [`Self::finish`] returns, or earlier.
     ///
     /// # Errors
-    /// The errors of [`crate::files::write_file`]. If this file completes a group, also the errors
-    /// of earlier files of the group.
+    /// The errors of [`crate::files::write_file`]. If this file completes a group, the call also
+    /// returns errors of earlier files in the group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_to(Target::new(path)?, bytes)
     }
@@ -73,10 +73,11 @@ impl Batch {
         if self.written.len() < GROUP { Ok(()) } else { self.keep() }
     }
 
-    /// Renames all files to their targets, and flushes the changes to disk.
+    /// Flushes the files to disk, renames them to their targets, and flushes the folders.
     ///
     /// # Errors
-    /// Errors of the system. Each target is then either the old file or the complete new file.
+    /// Errors of the system. After an error, each target is either the old file or the complete new
+    /// file.
     pub fn finish(mut self) -> io::Result<()> {
         self.keep()
     }

@@ -27,11 +27,12 @@ pub struct FileError {
 /// What is wrong with a file.
 #[derive(Debug)]
 pub enum FileProblem {
-    /// It could not be read.
+    /// The file could not be read.
     Read(io::Error),
-    /// It could not be written.
+    /// The file could not be written.
     Write(io::Error),
-    /// Its content cannot be used: the problem, and what to do about it.
+    /// The content of the file cannot be used. The text states the problem, and what to do about
+    /// it.
     Content(String),
 }
 
@@ -51,7 +52,7 @@ impl FileError {
         Self::new(file, FileProblem::Content(problem.to_string()))
     }
 
-    /// Adds the file to an error about its content.
+    /// Adds the name of the file to an error about its content.
     pub fn in_file<E: fmt::Display>(file: impl AsRef<Path>) -> impl FnOnce(E) -> Self {
         move |problem| Self::content(file, problem)
     }

@@ -27,8 +27,8 @@ impl Key {
     /// Reads the key with this name in a folder. Creates a random key if there is none.
     ///
     /// # Errors
-    /// If the folder belongs to another user or is writable by others, if the file belongs to
-    /// another user or is not private, or if the system reports an error.
+    /// If the folder or the file belongs to another user, if others can write to the folder or
+    /// access the file, or if the system reports an error.
     pub fn load_or_create(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
@@ -40,7 +40,8 @@ impl Key {
         Ok(Self(key))
     }
 
-    /// Creates a temporary key for a user without a folder for keys. It exists only in this value.
+    /// Creates a temporary key for a user without a folder for keys. The key is not stored: it
+    /// exists only in this value.
     ///
     /// # Errors
     /// If the system provides no random numbers.

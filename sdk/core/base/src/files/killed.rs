@@ -2,8 +2,9 @@
 //!
 //! The name of an unfinished file identifies its process: `.htex-MACHINE-PID-RANDOM.part`.
 //! `MACHINE` is a hash that distinguishes this system's process numbers from other systems'
-//! numbers. Other machines and containers may share the folder, and this process cannot see their
-//! processes. So it removes their unfinished files only when these are old.
+//! numbers. A folder may be shared with other machines and containers, whose processes this process
+//! cannot see. So this process removes unfinished files of other machines only when the files are
+//! old.
 
 use std::collections::BTreeSet;
 use std::fs::Metadata;

@@ -1,8 +1,9 @@
 //! Reads and writes files safely, including untrusted files and folders.
 //!
-//! - If an untrusted file, such as a recipe, names a file to read, that file must be a regular
-//!   file, and is read only up to a size limit ([`read_regular`]).
-//! - A program that writes to an untrusted folder follows no links in it ([`OwnFolder`]).
+//! - If an untrusted file, such as a recipe, names another file, the program reads the named file
+//!   only if it is a regular file, and only up to a size limit ([`read_regular`]).
+//! - A program that writes to an untrusted folder does not follow links in this folder
+//!   ([`OwnFolder`]).
 //! - Data that a program stores in such a folder is authenticated (`Key`).
 //! - Files are written atomically: a file is first written next to its target and then renamed to
 //!   it, so that readers see either the old file or the complete new file.
@@ -156,7 +157,7 @@ impl FileInProgress {
     /// the complete new file, even after a crash.
     ///
     /// # Errors
-    /// Errors of the system. The target is then unchanged.
+    /// Errors of the system. After an error, the target is unchanged.
     pub fn keep(mut self) -> io::Result<()> {
         self.file().flush()?;
         let Target::Beside(beside, path) = &mut self.0 else {
@@ -183,15 +184,15 @@ impl Drop for FileInProgress {
     }
 }
 
-/// A temporary file for data that does not fit into memory while another file is written. It is
-/// removed when this value is dropped.
+/// A temporary file for intermediate data that does not fit into memory. Programs use it while they
+/// write another file. The temporary file is removed when this value is dropped.
 #[derive(Debug)]
 pub struct Scratch(NamedTempFile);
 
 impl Scratch {
-    /// Creates a file next to `path`, on the file system that must also have space for the result.
-    /// If `path` is a pipe or a device, the file is created in the system's folder for temporary
-    /// files.
+    /// Creates a file in the folder of `path`, and thus on the file system on which the result will
+    /// be. If `path` is a pipe or a device, the file is created in the system's folder for
+    /// temporary files.
     ///
     /// # Errors
     /// If the folder does not exist, or the system reports an error.
@@ -219,11 +220,11 @@ impl Drop for Scratch {
     }
 }
 
-/// Writes a file atomically: `write` writes to a temporary file next to `path`. If it succeeds, the
-/// temporary file is renamed to `path`.
+/// Writes a file atomically. `write` writes to a temporary file in the folder of `path`. If `write`
+/// succeeds, the temporary file is renamed to `path`.
 ///
 /// # Errors
-/// Errors of `write` and of the system. `path` is then unchanged.
+/// Errors of `write` and of the system. After an error, the file at `path` is unchanged.
 pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,

@@ -1,11 +1,12 @@
-//! A folder in which a program writes and removes files, although somebody else may have made the
-//! folder. An example is the result of an earlier build that was unpacked from an archive.
+//! A folder in which a program writes and removes files, and which may come from somebody else. An
+//! example is the result of an earlier build that was unpacked from an archive.
 //!
-//! Such a folder may contain links at the places where the program writes and removes files. So no
-//! link inside the folder is followed. Only the folder itself may be a link, because the user names
-//! it. To write a file, the program writes it under a new name and renames it, which replaces a
-//! link of that name. To remove an entry, the program removes the entry itself, never the target of
-//! a link. Any other use of a link inside the folder is an error.
+//! Such a folder may contain links at the places where the program writes and removes files. So the
+//! program does not follow links inside the folder. Only the folder itself may be a link, because
+//! the user names it. The program writes each file under a temporary name and then renames it to
+//! the final name. If a link has the final name, the new file replaces the link. To remove an
+//! entry, the program removes the entry itself, never the target of a link. Any other use of a link
+//! inside the folder is an error.
 //!
 //! The checks run before each access. They protect against links that are already in the folder,
 //! but not against a process that changes the folder at the same time.
@@ -37,14 +38,15 @@ impl OwnFolder {
         Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// Uses the folder at this path, as [`Self::new`] does. But only this user may read the folders
-    /// and files that are created in it, and the folder itself if it is created.
+    /// Uses the folder at this path, as [`Self::new`] does, but everything that is created is
+    /// private. Only this user may read new folders and files in the folder. If the folder itself
+    /// does not exist yet, it is also created as a private folder.
     pub fn private(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::User }
     }
 
     /// Returns the folder of a file that the user named, and the file's name in the folder.
-    /// Commands use it for files that they write next to the named file.
+    /// Commands use this folder for files that they write next to the named file.
     ///
     /// # Errors
     /// If the path does not end in a name.
@@ -59,11 +61,12 @@ impl OwnFolder {
         &self.folder
     }
 
-    /// Checks that no folder above an entry, inside this folder, is a link. Returns the entry's
+    /// Checks that no folder on the way from this folder to an entry is a link. Returns the entry's
     /// path. An empty path stands for the folder itself.
     ///
     /// # Errors
-    /// If a part above the entry is a link or not a folder, or the path leads out of the folder.
+    /// If something on the way to the entry is a link or is not a folder, or if the path leads out
+    /// of this folder.
     pub fn entry_path(&self, inside: &Path) -> io::Result<PathBuf> {
         let mut path = self.folder.clone();
         let mut parts = inside.components().peekable();
@@ -139,7 +142,7 @@ impl OwnFolder {
     ///
     /// # Errors
     /// Errors of `write` and of the system, the errors of [`Self::make_folder`], and an error if a
-    /// folder has this name. The previous file then does not change.
+    /// folder has this name. After an error, the previous file is unchanged.
     pub fn replace(
         &self,
         inside: &Path,
@@ -151,8 +154,8 @@ impl OwnFolder {
         unfinished.keep()
     }
 
-    /// Writes a file as [`Self::replace`] does, but as part of a batch. The file has its name after
-    /// [`Batch::finish`].
+    /// Writes a file as [`Self::replace`] does, but as part of a batch. The file appears under its
+    /// name when [`Batch::finish`] returns, or earlier.
     ///
     /// # Errors
     /// The errors of [`Self::replace`] and of [`Batch::write`].

@@ -1,4 +1,5 @@
-//! Private folders and files, which only this user can write to or read.
+//! Private folders, to which only this user can write, and private files, which only this user can
+//! read and write.
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io;

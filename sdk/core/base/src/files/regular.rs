@@ -2,9 +2,9 @@
 //! to a recording.
 //!
 //! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory.
-//! Programs read all such files with this module. It reads only regular files, and only up to a
-//! size limit. A file that the user names as an argument may be a pipe, so programs do not open it
-//! with this module.
+//! Programs therefore read all such files with this module, which reads only regular files, and
+//! only up to a size limit. Programs do not use this module for a file that the user names as an
+//! argument, because such a file may be a pipe.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};

@@ -29,13 +29,13 @@ pub struct FileReport {
     pub valid: bool,
     /// All findings, in the order in which the file is read.
     pub findings: Vec<Finding>,
-    /// The limits for reading that differ from their defaults: the name and the value of each.
+    /// Names and values of those reading limits that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub limits: BTreeMap<String, u64>,
 }
 
 impl Report {
-    /// Creates a report from findings. It is valid if none of them is an error.
+    /// Creates a report from findings. The file counts as valid if no finding is an error.
     pub fn new(findings: Vec<Finding>) -> Self {
         let is_error = |finding: &Finding| finding.severity == Severity::Error;
         Self { valid: !findings.iter().any(is_error), findings }
@@ -102,7 +102,8 @@ impl Findings {
         self.errors
     }
 
-    /// Returns the findings. If some were dropped, a last finding states how many.
+    /// Returns the findings. If there were more than a hundred, a last finding states how many were
+    /// dropped.
     pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);

@@ -26,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the environment variables for folders whose value is a relative path, and these paths.
-/// The other functions of this module ignore such variables.
+/// Returns the names and values of the environment variables for folders whose value is a relative
+/// path. The other functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);

@@ -3,9 +3,9 @@
 //!
 //! A library is never unloaded, because function pointers, open devices and voices point into it.
 //!
-//! Apart from tests, only this crate loads libraries. A name without a folder means a file in the
-//! current folder, as for every other argument. The system's loader searches only for the library
-//! of NI-DAQmx, and for a `driver` that is not a file.
+//! Apart from tests, only this crate loads libraries. As in every other argument, a file name
+//! without a folder means a file in the current folder. There are two exceptions, for which the
+//! system's loader searches: the library of NI-DAQmx, and a `driver` setting that names no file.
 
 pub mod folders;
 
@@ -92,7 +92,7 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If the loader finds none of them. The message gives the reason for each.
+    /// If the loader finds none of the libraries. The message gives the reason for each library.
     pub unsafe fn installed(names: &[&str]) -> io::Result<Self> {
         let mut reasons = Vec::new();
         for name in names {

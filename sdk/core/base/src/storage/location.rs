@@ -13,7 +13,7 @@ const KNOWN: &str = "s3://, gs://, az://, https://, http:// and file://";
 
 /// The location of a local or remote file.
 ///
-/// It is displayed without the query of a URL, because the query may contain a signature.
+/// A URL is displayed without its query, because the query may contain a signature.
 ///
 /// ```
 /// use htex_base::storage::Location;
@@ -60,7 +60,7 @@ impl Location {
     ///
     /// In `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY`, the key is used exactly as
     /// written. `https://…` and `http://…` are URLs. `file:///PATH` may have escapes (`%20`). Any
-    /// other argument is a local path. It is used unchanged, even if it is not Unicode.
+    /// other argument is a local path, which is used unchanged, even if it is not Unicode.
     ///
     /// # Errors
     /// If the argument is a URI that has another scheme, has a user name or password, is

@@ -81,8 +81,8 @@ enum NameSource {
     /// The user, who may name any server.
     #[default]
     ByPerson,
-    /// A file named them, such as a recipe. It may name public servers, and the server on which it
-    /// is stored itself.
+    /// A file, such as a recipe. A recipe may name public servers, and the server on which the
+    /// recipe itself is stored.
     InFileAt(Option<Location>),
 }
 
@@ -94,8 +94,8 @@ impl Storage {
 
     /// Restricts access to locations that a file such as a recipe may name. `origin` is the
     /// location of that file if it is remote. The only web servers allowed are public servers and
-    /// the server of `origin`. The only object stores are the stores that the user's environment
-    /// variables name.
+    /// the server of `origin`. The only object stores allowed are the stores that the user's
+    /// environment variables name.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
         self.named = NameSource::InFileAt(origin.cloned());
@@ -145,7 +145,7 @@ impl Storage {
     /// Returns the size and version of a file, or `None` if the file does not exist.
     ///
     /// # Errors
-    /// If the program cannot find this out.
+    /// If the server does not state whether the file exists, or how large it is.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::stat(path),
@@ -190,8 +190,9 @@ impl Storage {
         Ok(remote.into_head())
     }
 
-    /// Opens one version of a file for reading ranges. It sends a single request, which returns the
-    /// first `head_bytes` bytes and the size. Reading within these bytes needs no further request.
+    /// Opens one version of a file for reading ranges. The call sends a single request, which
+    /// returns the first `head_bytes` bytes and the size. Reading within these bytes needs no
+    /// further request.
     ///
     /// # Errors
     /// The errors of [`Self::read`].
@@ -259,7 +260,7 @@ impl Storage {
     /// Removes a file. A missing file is not an error.
     ///
     /// # Errors
-    /// If the file cannot be removed; always for a web server.
+    /// If the file cannot be removed. A file on a web server can never be removed.
     pub fn remove(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::remove(path),

@@ -1,8 +1,8 @@
 //! Time limits, retries, and the environment variables that contain credentials.
 //!
-//! The retries last as long as a server takes to restart. 20 pauses of at most 2 s add up to 33 s
-//! on average and at most 37 s; in 999 of 1,000 cases they last at least 22 s (100,000 random
-//! sequences).
+//! The retries continue for about as long as a server takes to restart. The 20 pauses of at most 2
+//! s add up to 33 s on average, and to at most 37 s. In 999 of 1,000 cases the sum is at least 22 s
+//! (measured with 100,000 random sequences).
 
 use std::fmt;
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Returns the licence and the author of textures, for files that are made from them.
+//! Returns the licence and the author of textures, to store them in files that are made from these
+//! textures.
 
 use htex::format::Asset;
 use htex_format::Rights;

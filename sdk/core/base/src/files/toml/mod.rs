@@ -1,14 +1,16 @@
 //! Reads TOML. All programs of htex read TOML files with this module: recipes, studies,
 //! calibrations and the profiles of actuators.
 //!
-//! The parser of the crate `toml` is recursive. Its own limit (80 levels) has two gaps. After an
-//! error it counts wrongly: a closing bracket without an opening one lowers its count, so that
-//! 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. And it counts the dots of each
-//! dotted key separately, so that 80 nested tables with 80 names each make 6,400 levels.
+//! The parser of the crate `toml` is recursive. The parser itself limits the nesting to 80 levels,
+//! but counts the levels wrongly in two cases. After a syntax error, a closing bracket without an
+//! opening bracket lowers the count, so that 7,200 lines of `motion = { const']` overflowed a stack
+//! of 8 MiB. The levels of each dotted key are counted separately, so that 80 nested tables with 80
+//! names each make 6,400 levels.
 //!
 //! Therefore this module counts the brackets and dots of a text before it parses the text
 //! (`nesting.rs`). A text with more than [`MOST_LEVELS`] levels is an error. No other module may
-//! call the crate (`clippy.toml`; no other crate depends on it).
+//! call the crate `toml`: `clippy.toml` forbids the calls, and no other crate of htex depends on
+//! `toml`.
 #![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
 
 mod nesting;
@@ -55,7 +57,7 @@ impl TomlError {
     }
 }
 
-/// Reads a TOML text into a value. Needs less than 256 KiB of stack, whatever the text is.
+/// Reads a TOML text into a value. The call needs less than 256 KiB of stack for any text.
 ///
 /// ```
 /// # use std::collections::BTreeMap;

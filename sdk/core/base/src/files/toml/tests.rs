@@ -1,4 +1,4 @@
-//! Tests texts that make the parser recurse, each on a small stack.
+//! Tests that no text makes the parser overflow a small stack.
 
 use serde_json::Value;
 

@@ -1,11 +1,12 @@
 //! Decides to which addresses a program may send a request. This module checks the addresses of
 //! arguments, of names in files, and of redirects.
 //!
-//! In an argument or in an environment variable, the user may name any address. A file such as a
-//! recipe may only name public addresses, or the server that the user named, and a server may only
-//! redirect to these. Otherwise an untrusted file could cause requests inside the user's network,
-//! to the machine itself, and to the metadata service of its cloud. The rule applies to the address
-//! to which a name resolves, because the connection goes to this address.
+//! The user may name any address in an argument or in an environment variable. A file such as a
+//! recipe may name only public addresses and the server that the user named. Servers may redirect
+//! only to the same addresses. Without this rule, an untrusted file could cause requests inside the
+//! user's network, to the machine itself, and to the metadata service of the cloud in which the
+//! machine runs. The rule applies to the address to which a name resolves, because the connection
+//! goes to this address.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 

@@ -1,5 +1,5 @@
-//! The HTTP clients: TLS with rustls, time limits, and a check of the addresses. They do not follow
-//! redirects. The module [`super::redirects`] follows them, with another client.
+//! The HTTP clients: TLS with rustls, time limits, and a check of the addresses. The clients do not
+//! follow redirects. The module [`super::redirects`] follows redirects with a separate client.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -1,7 +1,8 @@
 //! Counts the requests for a file, and remembers the last one for error messages.
 //!
-//! This layer is between the library and the HTTP client. It remembers how the last request ended,
-//! because the library retries requests and its errors do not say how the last one ended.
+//! This layer is between the crate `object_store` and the HTTP client. The crate retries requests,
+//! and its errors do not say how the last request ended. Therefore this layer remembers the end of
+//! the last request.
 
 use std::error::Error;
 use std::pin::Pin;
@@ -96,7 +97,8 @@ const MOST_LIST_BYTES: usize = 16 << 20;
 /// The client that sends requests.
 #[derive(Debug, Clone)]
 pub(crate) enum Client {
-    /// With credentials, to a store in the environment. Redirects are not followed.
+    /// Sends requests with credentials to a store that the environment variables configure. Does
+    /// not follow redirects.
     Store(reqwest::Client),
     Web(RedirectClient),
 }

@@ -27,9 +27,9 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 /// While the coefficients are constant, the filter computes four samples at a time (transposed
 /// direct form II, the recursion unrolled for four samples). While the coefficients change, the
 /// filter runs as a lattice, which is stable if each reflection coefficient is inside (-1, 1). The
-/// switch from the lattice to the direct form is inaudible. It happens after as many samples with
-/// constant coefficients as the lattice has stages, when the state of the lattice depends only on
-/// its last outputs.
+/// switch from the lattice to the direct form is inaudible. It happens after at least as many
+/// samples with constant coefficients as the lattice has stages, when the state of the lattice
+/// depends only on its last outputs.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;

@@ -103,8 +103,8 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Returns the Pearson correlation of two slices, a number from -1 to 1. If one slice is longer,
-/// its excess values are ignored.
+/// Returns the Pearson correlation of two slices, a number from -1 to 1. If one slice is longer
+/// than the other, its excess values are ignored.
 ///
 /// The result is never NaN for finite input. If either slice is constant, the correlation is
 /// undefined and the result is 0, except that two equal slices give 1.

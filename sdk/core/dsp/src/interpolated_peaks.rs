@@ -1,13 +1,14 @@
-//! Finds the peaks of a spectrum between its bins. A peak is the frequency and amplitude of a
-//! sinusoid. If the periodic Hann window measured this sinusoid, a local maximum of the spectrum
-//! and its larger neighbour would have exactly their heights.
+//! Finds the peaks of a spectrum between its bins. From each local maximum and its larger
+//! neighbour, this module computes the frequency and amplitude of a sinusoid. A periodic Hann
+//! window would measure exactly these two bins from this sinusoid.
 //!
 //! If the sinusoid is `d` bins from the maximum, the neighbour on the sinusoid's side is `(1 + d) /
 //! (2 - d)` times as high as the maximum. Magnitudes averaged over segments keep this ratio. The
 //! table compares this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2
-//! C + R)`, and with a parabola through three logarithms. Each cell has the RMS error and the
-//! largest error, first of the frequency and then of the amplitude. The spectra are averages of the
-//! power of 10 segments, from 60 Hz to 900 Hz:
+//! C + R)`, and with a parabola through three logarithms. Each cell has four errors: the RMS error
+//! and the largest error of the frequency, then the RMS error and the largest error of the
+//! amplitude. Each spectrum is the mean power of 10 segments, and the sinusoids lie between 60 Hz
+//! and 900 Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|
@@ -30,8 +31,8 @@ use crate::window::hann_main_lobe;
 /// An edge bin counts as a maximum if it is above its only neighbour; its peak is at the edge or
 /// inside. A spectrum of one value has no peak.
 ///
-/// `frequency_hz` is the 5 Hz grid of a band, in hertz. It has the same length as `magnitude`; the
-/// excess of a longer slice is ignored.
+/// `frequency_hz` is the 5 Hz grid of a band, in hertz. If `frequency_hz` and `magnitude` differ in
+/// length, the excess values of the longer slice are ignored.
 ///
 /// ```
 /// use htex_dsp::interpolated_peaks::select_interpolated_peaks;

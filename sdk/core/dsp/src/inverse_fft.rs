@@ -1,8 +1,9 @@
 //! Inverse FFT from a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! Other FFT libraries choose instructions that depend on the processor, and so does their
-//! rounding. They are also slow in WASM. This FFT (Stockham, radices 2 to 5) is plain arithmetic on
-//! arrays, which compilers vectorise in native libraries and in WASM modules.
+//! Other FFT libraries choose their instructions by the processor, so their rounding differs
+//! between processors. These libraries are also slow in WASM. This FFT (Stockham, radices 2 to 5)
+//! is plain arithmetic on arrays, which compilers vectorise in native libraries and in WASM
+//! modules.
 //!
 //! The lengths of frames have no prime factor above 5, so these radices suffice.
 

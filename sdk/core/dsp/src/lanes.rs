@@ -1,4 +1,4 @@
-//! Numbers side by side, compiled to vector instructions.
+//! Short arrays of numbers whose arithmetic compiles to vector instructions.
 
 use core::ops::{Add, Mul, Sub};
 

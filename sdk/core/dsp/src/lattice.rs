@@ -1,10 +1,11 @@
 //! All-pole lattice filter. Unlike a direct form, it stays stable while its coefficients change, as
 //! long as each reflection coefficient is inside (-1, 1).
 //!
-//! A WASM module checks its time limit at the start of every iteration of a loop. At this check,
-//! the values that one iteration passes to the next go through memory. So the lattice has a few
-//! fixed lengths without an inner loop, and keeps all state in registers. [`crate::biquad`] and
-//! [`crate::sine_bank`] are unrolled for the same reason.
+//! A WASM module checks its time limit at the start of every iteration of a loop. At each check,
+//! the values that one iteration passes to the next are stored in memory and loaded again. To avoid
+//! this, the code of the lattice exists for a few fixed lengths. It has no inner loop over the
+//! stages, so all state stays in registers. [`crate::biquad`] and [`crate::sine_bank`] are unrolled
+//! for the same reason.
 
 use alloc::vec::Vec;
 

@@ -1,6 +1,6 @@
-//! Line spectral frequencies of a stable all-pole model: the angles of the zeros of two
-//! polynomials, one symmetric and one antisymmetric, whose mean is the model's denominator (Itakura
-//! 1975).
+//! Line spectral frequencies of a stable all-pole model (Itakura 1975). The denominator of the
+//! model is the mean of a symmetric and an antisymmetric polynomial. The line spectral frequencies
+//! are the angles of the zeros of these two polynomials.
 //!
 //! The angles of the two polynomials alternate. So any weighted mean of the line spectral
 //! frequencies of two stable models belongs to a stable model. This makes line spectral frequencies
@@ -22,8 +22,8 @@ const NEAR: f64 = 4.0 * f64::EPSILON;
 ///
 /// The lattice of the model contains an all-pass filter. The line spectral frequencies are the
 /// angles at which the phase of this filter is a multiple of π. The phase decreases monotonically,
-/// from 0 at ω = 0 to -(p + 1)π at ω = π, and a sum over the reflection coefficients gives it
-/// without ambiguity. So Newton's method inside a bracket finds each angle, at any order.
+/// from 0 at ω = 0 to -(p + 1)π at ω = π. It is computed as a sum over the reflection coefficients,
+/// without an ambiguity of 2π. So Newton's method inside a bracket finds each angle, at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -91,9 +91,9 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Converts line spectral frequencies, in radians, to prediction coefficients. Returns `None` if
-/// there are more than [`MOST_LINES`] of them, or if they are not strictly ascending inside (0, π),
-/// as a stable model requires.
+/// Converts line spectral frequencies, in radians, to prediction coefficients. A stable model
+/// requires that they are strictly ascending inside (0, π). Returns `None` if they are not, or if
+/// there are more than [`MOST_LINES`] frequencies.
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];
     coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)

@@ -23,9 +23,9 @@ pub struct LinearPrediction {
     pub reflection: Vec<f64>,
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
-    /// Number of stages that the data determine. It is below p if fewer stages predict the signal
-    /// completely. The magnitude of the last usable reflection coefficient is then limited to 1 -
-    /// 1e-10, and the coefficients after it are zero.
+    /// Number of stages that the data determine. This number is below p if fewer than p stages
+    /// predict the signal completely. The magnitude of the last usable reflection coefficient is
+    /// then limited to 1 - 1e-10, and the coefficients after it are zero.
     pub usable_stages: usize,
     /// Whether the estimate was changed to make it stable (see `usable_stages`, and [`stabilize`]
     /// for the covariance method).
@@ -168,7 +168,8 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
 
 /// Makes an unstable model stable by scaling its poles: the result is `A_i g^i`. The factor g moves
 /// the outermost pole to its mirror image in the unit circle, where its magnitude peak is the same.
-/// A stable model is returned unchanged. A model that is not finite becomes zeros.
+/// A stable model is returned unchanged. If a coefficient is not finite, all coefficients of the
+/// result are zero.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
         return coefficients.to_vec();
@@ -189,8 +190,8 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
 
 /// Limits the radius of every pole to `radius` (below 1). If a pole lies farther out, the result is
 /// `A_i g^i`, where the factor g moves the outermost pole to `radius`. This also corrects poles
-/// that lie outside the unit circle because the coefficients were rounded. A model that is not
-/// finite becomes zeros.
+/// that lie outside the unit circle because the coefficients were rounded. If a coefficient is not
+/// finite, all coefficients of the result are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;
@@ -238,8 +239,8 @@ pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
 }
 
 /// Magnitude `|H|` of a model at `f_hz`, at the sample rate `rate_hz`, both in hertz: the magnitude
-/// of the output for white noise of unit magnitude. It grows without bound near a pole on the unit
-/// circle.
+/// of the output for white noise of unit magnitude. The magnitude grows without bound near a pole
+/// on the unit circle.
 pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);

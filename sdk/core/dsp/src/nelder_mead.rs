@@ -8,10 +8,10 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Tolerance of the position. The search stops when no vertex is farther than this from the
-    /// best vertex along any axis, and `f_tolerance` is also met.
+    /// best vertex along any axis, provided that `f_tolerance` is also met.
     pub x_tolerance: f64,
     /// Tolerance of the function value. The search stops when the value of no vertex exceeds the
-    /// best value by more than this, and `x_tolerance` is also met.
+    /// best value by more than this, provided that `x_tolerance` is also met.
     pub f_tolerance: f64,
     /// Maximum number of function calls.
     pub max_evaluations: usize,
@@ -47,8 +47,8 @@ pub struct Minimum<const N: usize> {
     pub converged: bool,
 }
 
-/// Minimises `f`, starting at `start`. NaN counts as +∞, so `f` may return either of them to
-/// exclude a region.
+/// Minimises `f`, starting at `start`. To exclude a region, `f` may return +∞ or NaN, which counts
+/// as +∞.
 ///
 /// The search is deterministic: with the same function, start and options it evaluates the same
 /// points. Reaching `max_evaluations` is not an error; the function then returns the best point so

@@ -13,9 +13,9 @@ const FEW: usize = 2;
 const PAIR: usize = 2;
 
 /// Filter sections in series, like a [`crate::biquad::Cascade`], but pipelined: in each step, a
-/// section processes the two samples that the section before it finished in the last step. So all
-/// sections compute at the same time. The output is delayed by six samples for every four sections.
-/// Use a pipeline for streams in which a delay of a few samples does not matter.
+/// section processes the two samples that the section before it finished in the previous step. So
+/// all sections compute at the same time. The output is delayed by six samples for every four
+/// sections. Use a pipeline for streams in which a delay of a few samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -59,8 +59,9 @@ struct State<T, const N: usize> {
 }
 
 impl Pipeline {
-    /// Makes a pipeline of `sections` with zero state. Every `b0` must be nonzero. Sections that
-    /// pass their input unchanged fill up incomplete rows.
+    /// Makes a pipeline of `sections` with zero state. Every `b0` must be nonzero. Sections are
+    /// computed in rows of four or two. An incomplete row is filled up with sections that pass
+    /// their input unchanged.
     pub fn new(sections: &[Biquad]) -> Self {
         let (rows, last) = match sections.len() % LANES {
             few @ 1..=FEW => sections.split_at(sections.len() - few),

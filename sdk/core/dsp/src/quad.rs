@@ -1,6 +1,6 @@
-//! Numbers of four voices side by side. In a recursive filter each sample depends on the sample
-//! before it. So the lanes of a vector register contain samples of different voices instead of
-//! successive samples.
+//! Vectors that contain one number for each of four voices. In a recursive filter each sample
+//! depends on the sample before it. So the lanes of a vector register contain samples of different
+//! voices instead of successive samples.
 
 use core::ops::{Add, Mul, Sub};
 

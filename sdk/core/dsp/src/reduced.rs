@@ -1,9 +1,11 @@
-//! Converts levels and mean frequencies to the input of motors and parametric haptic interfaces:
-//! strengths and places in a range of frequencies, from 0 to 1, and points of both.
+//! Converts levels and mean frequencies to the input of motors and parametric haptic interfaces. A
+//! level becomes a strength from 0 to 1. A mean frequency becomes its place in a range of
+//! frequencies, from 0 to 1. A point combines a time, a strength and a place.
 //!
 //! Such an interface interpolates linearly between points. Each block of samples gives one point,
 //! at the end of the block, with the block's level. So the interface reaches the level of a block
-//! when the block ends, on average half a block later than if levels were steps.
+//! when the block ends. On average, its output is half a block later than the output of an
+//! interface that holds each level during its block.
 
 use crate::envelope::Measurement;
 
@@ -45,8 +47,9 @@ fn unit(x: f64) -> f64 {
 }
 
 /// Divides a strength between the large and the small motor of a gamepad, depending on the mean
-/// frequency. Up to 60 Hz the large motor gets the whole strength, and from 420 Hz the small motor
-/// gets it. Between these frequencies the two parts change linearly with the frequency.
+/// frequency. Up to 60 Hz the large motor gets the whole strength. From 420 Hz on, the small motor
+/// gets the whole strength. Between these frequencies the two parts change linearly with the
+/// frequency.
 ///
 /// ```
 /// use htex_dsp::reduced::two_motors;
@@ -86,13 +89,14 @@ pub struct Point {
 pub struct Points {
     /// Number of samples so far.
     pub frames: u64,
-    /// The last place. Silence has no frequency, so the place stays unchanged during silence.
+    /// Place of the last point. Silence has no frequency, so the place stays unchanged during
+    /// silence.
     pub place: f32,
 }
 
 impl Points {
-    /// Returns the points for the next block: one at its end, and for the first block also one at
-    /// time 0.
+    /// Returns the points for the next block. Each block has one point at its end, and the first
+    /// block also has a point at time 0.
     pub fn block(
         &mut self,
         measured: &Measurement,

@@ -5,8 +5,9 @@
 //! while it runs, and gives the same samples for any block size. The project has its own converter
 //! because the resamplers of other libraries work in chunks of a fixed size.
 //!
-//! Textures end at 1 kHz, so noise is generated at 2 to 4 kHz. This needs five to eight times fewer
-//! samples, and the converter's filter is also the steep filter at the top of the band.
+//! Textures have no content above 1 kHz, so voices generate noise at 2 to 4 kHz. A voice then
+//! generates five to eight times fewer samples than at the rate of the device. In addition, the
+//! converter's filter is the steep filter that ends the noise at the top of the band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -72,13 +73,13 @@ impl Resampler {
         Self::with_specs(specs(from_hz, to_hz, top_hz)?)
     }
 
-    /// Makes a converter for a source whose rate is fixed at `from_hz`, such as a filter. Otherwise
-    /// the same as [`Self::new`].
+    /// Makes a converter as [`Self::new`] does, but for a source whose rate is fixed at `from_hz`,
+    /// such as a filter.
     ///
-    /// A conversion to a high rate removes up to half of the source's power near half of its own
-    /// rate. This converter removes the same power if the rates are equal ([`OwnRate`]) or if
-    /// `to_hz` is lower. So the level is the same at all rates that can represent the source's
-    /// frequencies.
+    /// Near half the source's rate, a conversion to a high rate removes up to half of the source's
+    /// power. This converter removes the same power if the two rates are equal ([`OwnRate`]) or if
+    /// `to_hz` is the lower rate. So the level is the same at all rates that can represent the
+    /// source's frequencies.
     ///
     /// # Errors
     /// The errors of [`Self::new`].
@@ -152,10 +153,10 @@ pub struct Part {
     pub macs: f64,
 }
 
-/// The amplitude that a conversion to a high rate passes at each frequency, for a source with a
-/// fixed rate of its own whose frequencies extend into the transition band around half that rate.
-/// In the middle of the transition band, half the amplitude passes, and an image with the same
-/// amplitude appears.
+/// The amplitude that a conversion to a high rate passes at each frequency. It is needed for a
+/// source with a fixed rate, if the source's frequencies extend into the transition band around
+/// half of this rate. In the middle of the transition band, half the amplitude passes, and an image
+/// with the same amplitude appears.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,

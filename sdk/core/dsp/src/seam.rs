@@ -30,7 +30,7 @@ impl Loop {
     ///
     /// The gains of the cross-fade are a sine and a cosine, divided by the square root of the power
     /// that the sum would have, given the correlation of the two pieces. Noise keeps its power, and
-    /// a sound whose period is the loop stays unchanged.
+    /// a sound that repeats with the period of the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;

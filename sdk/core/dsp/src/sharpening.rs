@@ -8,9 +8,9 @@ const SHARPENINGS: usize = 2;
 /// measured through the Hann window is approximately `power`.
 ///
 /// The window distributes the power of noise over bins: two thirds stay in a bin, and a sixth goes
-/// to each neighbour. Two Richardson–Lucy steps approximately invert this. Next to flanks that are
-/// steeper than the window's flanks, some blur remains. All slices have the length of `power`,
-/// which may be 0; `before` is working memory. Does not allocate.
+/// to each neighbour. Two Richardson–Lucy steps approximately undo this distribution. Next to
+/// flanks that are steeper than the window's flanks, some blur remains. All slices have the length
+/// of `power`, which may be 0; `before` is working memory. Does not allocate.
 ///
 /// ```
 /// let (mut before, mut sharp) = ([0.0; 3], [0.0; 3]);

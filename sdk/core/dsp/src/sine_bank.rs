@@ -1,13 +1,14 @@
 //! A bank of sine oscillators without phase drift.
 //!
-//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so the phase after a
-//! day of samples is as accurate as at the start: a day drifts by less than a millionth of a cycle.
+//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64). In a day of samples,
+//! the phase drifts by less than a millionth of a cycle.
 //!
-//! Recurrences generate the samples. At regular intervals (anchors) they restart from the counted
-//! phase. While nothing changes, an oscillator generates eight samples at a time from the previous
-//! sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are independent, which suits
-//! vector instructions. While amplitudes or frequencies change, the oscillator computes each sample
-//! from the sample before it, by rotating a point by the oscillator's angle per sample.
+//! The samples are computed by recurrences. At regular intervals (anchors) the recurrences restart
+//! from the counted phase. While nothing changes, an oscillator generates eight samples at a time
+//! from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are
+//! independent, which suits vector instructions. While amplitudes or frequencies change, the
+//! oscillator computes each sample from the sample before it, by rotating a point by the
+//! oscillator's angle per sample.
 
 use alloc::vec::Vec;
 

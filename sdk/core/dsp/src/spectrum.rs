@@ -27,8 +27,8 @@ impl core::fmt::Display for WrongLength {
 
 impl core::error::Error for WrongLength {}
 
-/// Computes the spectra of segments of one length with a real FFT, with or without mean removal and
-/// the periodic Hann window.
+/// Computes the spectra of segments of one length with a real FFT. [`Self::analyze`] first removes
+/// the mean and applies the periodic Hann window; [`Self::transform`] does neither.
 ///
 /// ```
 /// use htex_dsp::spectrum::SegmentAnalyzer;
@@ -85,8 +85,8 @@ impl SegmentAnalyzer {
         Ok(())
     }
 
-    /// Transforms the segment without removing the mean and without a window. Otherwise the same as
-    /// [`Self::analyze`].
+    /// Transforms the segment as [`Self::analyze`] does, but does not remove the mean and applies
+    /// no window.
     ///
     /// # Errors
     /// If `segment` or `bins` does not have the length of the analyser.

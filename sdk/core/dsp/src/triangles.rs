@@ -19,9 +19,9 @@ pub struct TriangleBank {
 }
 
 impl TriangleBank {
-    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and
-    /// have the same unit; flanks are linear in this unit. A filter that lies between two
-    /// neighbouring positions is empty.
+    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Edges and positions are
+    /// ascending and have the same unit. The flanks are linear in this unit. A filter that lies
+    /// between two neighbouring positions is empty.
     pub fn new(edges: &[f64], axis: &[f64]) -> Self {
         let triangles =
             edges.windows(3).map(|edge| Triangle::new([edge[0], edge[1], edge[2]], axis)).collect();

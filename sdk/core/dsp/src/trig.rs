@@ -1,5 +1,5 @@
-//! Sines, cosines and tangents of angles up to [`LARGEST`], with the same bits as `libm`. They omit
-//! `libm`'s code for larger angles, which would add 2 kB to a WASM module.
+//! Sines, cosines and tangents of angles up to [`LARGEST`], with the same bits as `libm`. `libm`'s
+//! code for larger angles is left out, because it would add 2 kB to a WASM module.
 //!
 //! The series and the reduction come from FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
 //! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.

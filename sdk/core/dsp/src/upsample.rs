@@ -4,8 +4,8 @@
 //! by side in a vector register. So no sum runs across the lanes of a register, and the output does
 //! not depend on the block sizes.
 //!
-//! Samples are pulled in multiples of eight, so that chains with different stages retune at the
-//! same samples.
+//! Source samples are pulled in multiples of eight. Therefore a voice retunes at the same source
+//! sample, whichever conversion stages follow it.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -1,15 +1,15 @@
 //! Perception of vibration by a fingertip: the smallest displacement that people detect, and the
 //! impedance of the skin, which converts a force to a displacement.
 //!
-//! The threshold applies to a vibrating contact of 2.9 cm² on the hand's glabrous skin. It is
-//! constant up to 40 Hz, and then falls by 12 dB per octave to its smallest value at 250 Hz, where
-//! the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35, 1962–1966, as
-//! summarised by Gescheider & Verrillo 1979). Above 250 Hz, it rises by 9 dB per octave (Verrillo
-//! 1966, *Psychonomic Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak
-//! (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). The
-//! thresholds of different people differ by some 10 dB. With a smaller contact, the part of the
-//! threshold that the Pacinian channel determines is higher: by 3 dB each time the area of the
-//! contact is halved.
+//! The threshold applies to a vibrating contact of 2.9 cm² on the hand's glabrous skin. The
+//! threshold is constant up to 40 Hz, and then falls by 12 dB per octave to its smallest value at
+//! 250 Hz, where the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35,
+//! 1962–1966, as summarised by Gescheider & Verrillo 1979). Above 250 Hz, the threshold rises by 9
+//! dB per octave (Verrillo 1966, *Psychonomic Science* 4, 135–136). The smallest threshold is −20
+//! dB re 1 µm, i.e. 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust.
+//! Soc. Am.* 84, 1680–1694). The thresholds of different people differ by some 10 dB. Where the
+//! Pacinian channel determines the threshold, the threshold is higher for a smaller contact: each
+//! halving of the contact's area raises it by 3 dB.
 //!
 //! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
 //! The smallest threshold and the values of [`Skin`] are commonly quoted from the papers, to one or
@@ -88,8 +88,8 @@ pub struct Listener {
 }
 
 impl Listener {
-    /// A listener at the sensitive end of both ranges: the threshold is 10 dB lower, and the skin
-    /// yields twice as far.
+    /// A listener with more sensitive fingertips than most people: the threshold is 10 dB lower
+    /// than usual, and the skin yields twice as far.
     ///
     /// ```
     /// use htex_dsp::vibrotactile::Listener;

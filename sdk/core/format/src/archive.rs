@@ -1,9 +1,9 @@
 //! Strict ZIP reader: checks all records first, then unpacks every entry.
 //!
 //! The ZIP format allows files in which two programs see different archives. The rules for assets
-//! exclude such files. The entries start at byte 0 and have no gaps between them. The directory
-//! follows, in the same order, and then the end record. The local headers state the same names and
-//! sizes as the directory.
+//! exclude such files. In an asset, the entries start at byte 0 and have no gaps between them.
+//! After the entries comes the directory, which lists them in the same order, and then the end
+//! record. The local headers state the same names and sizes as the directory.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;

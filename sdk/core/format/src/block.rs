@@ -136,13 +136,13 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
     Ok(rounded)
 }
 
-/// Rounds a model's parameters like [`round_parameters`], and keeps a value that is in its field's
-/// range inside that range.
+/// Rounds a model's parameters as [`round_parameters`] does, but never rounds a value out of its
+/// field's range.
 ///
-/// If the nearest value that can be stored is outside the range, the function uses the next value
-/// inside. For example, the 32-bit float nearest to a field's maximum of 0.2 is 0.200000003, which
-/// the model refuses. The function returns 0.199999988 instead. Every writer of a model's
-/// parameters rounds with this function.
+/// If the nearest value that can be stored is outside the range, the function uses the nearest
+/// storable value inside the range. For example, the 32-bit float nearest to a field's maximum of
+/// 0.2 is 0.200000003, which the model refuses. The function returns 0.199999988 instead. Every
+/// writer of a model's parameters rounds with this function.
 ///
 /// # Errors
 /// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the field cannot store any

@@ -15,7 +15,8 @@ impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Invalid`] if one of the findings is an error. It contains all findings.
+    /// [`ReadError::Invalid`] if one of the findings is an error. The returned error contains all
+    /// findings.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::from_bytes_with(bytes, &Limits::default())
     }

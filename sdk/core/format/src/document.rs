@@ -27,7 +27,8 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that apply to every kind of document. Each kind has its own codes for them.
+/// The rules that apply to every kind of document. Each kind of document has its own codes for
+/// these rules.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.

@@ -3,7 +3,7 @@
 
 use crate::MetadataError;
 
-/// Checks the syntax of a DOI. It does not look up whether the DOI is registered.
+/// Checks the syntax of a DOI. The function does not check whether the DOI is registered.
 ///
 /// # Errors
 /// [`MetadataError::Doi`], which says what to write.

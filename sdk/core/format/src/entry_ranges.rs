@@ -1,5 +1,5 @@
-//! Byte ranges of an archive's entries. Programs use them to store an entry that several assets
-//! share only once.
+//! Byte ranges of an archive's entries. If several assets share an entry, programs use these ranges
+//! to store the entry only once.
 
 use std::ops::Range;
 

@@ -96,7 +96,8 @@ pub enum WriteError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataError {
-    /// The id of a licence is not in the list, which grows over time.
+    /// The id of a licence is not in the SPDX list that this version contains. The id may be in a
+    /// newer list.
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]
@@ -112,7 +113,8 @@ pub enum MetadataError {
 }
 
 impl MetadataError {
-    /// Returns the broken rule. For an unlisted licence it is a warning, otherwise an error.
+    /// Returns the broken rule. The rule for an unlisted licence has the severity warning; all
+    /// other rules are errors.
     #[must_use]
     pub fn rule(&self) -> &'static Rule {
         match self {

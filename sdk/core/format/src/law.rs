@@ -208,14 +208,15 @@ impl Law {
     ///   J. J. Lopez Delgado, K. J. Kuchenbecker 2014).
     /// - Bare finger: vibrations scale in time with the speed (C. M. Greenspon, K. R. McLellan, J.
     ///   D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre, J.-L. Thonnard 2012).
-    ///   So velocity rises with the speed, acceleration rises with the square of the speed, and the
-    ///   friction force rises with the normal force.
+    ///   So the level of a velocity is proportional to the speed, the level of an acceleration is
+    ///   proportional to the square of the speed, and the level of other quantities does not change
+    ///   with the speed. All levels are proportional to the normal force.
     /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
     ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///
-    /// The assumed exponents of the level depend on the exponent of frequencies. If that exponent
-    /// was measured or given, they lie between the values for a relief (exponent 1) and for a
-    /// surface whose frequencies do not change (exponent 0).
+    /// The assumed exponents of the level depend on the frequency exponent a. Here a is 1, as for a
+    /// relief, or 0, as for a surface whose frequencies do not change with the speed.
+    /// [`Self::reassumed`] interpolates between these two cases if a was measured or given.
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
         let a = match contact {
             Contact::Finger => 1.0,
@@ -233,10 +234,11 @@ impl Law {
     /// assumption, measured exponents are averaged with the new assumption, and given exponents do
     /// not change.
     ///
-    /// The assumed exponents of the level depend on the law's frequency exponent. If the measured
-    /// frequencies of a surface scale with the speed, as on a relief, the level gets a relief's
-    /// exponents, whatever slid over the surface. If the frequencies do not change, the level does
-    /// not get them.
+    /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
+    /// contact. If this exponent is 1, so that the frequencies scale with the speed, the level gets
+    /// the exponents of a relief. If this exponent is 0, the level gets the exponents of a surface
+    /// whose frequencies do not change. Between 0 and 1, the exponents of the level are
+    /// interpolated.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);

@@ -51,7 +51,8 @@ pub fn close(folder: &Path) -> io::Result<()> {
     std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o700))
 }
 
-/// Does nothing: on other systems than Unix, folders in the user's home inherit its permissions.
+/// Does nothing. On systems other than Unix, a folder in the user's home folder inherits the
+/// permissions of the home folder.
 ///
 /// # Errors
 /// None.
@@ -89,7 +90,8 @@ fn check(opened: &Metadata, others: u32) -> io::Result<()> {
     }
 }
 
-/// Does nothing: on other systems than Unix, folders in the user's home inherit its permissions.
+/// Does nothing. On systems other than Unix, a folder in the user's home folder inherits the
+/// permissions of the home folder.
 #[cfg(not(unix))]
 fn check(_: &Metadata, _: u32) -> io::Result<()> {
     Ok(())

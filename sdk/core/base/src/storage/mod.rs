@@ -145,7 +145,7 @@ impl Storage {
     /// Returns the size and version of a file, or `None` if the file does not exist.
     ///
     /// # Errors
-    /// If the server does not state whether the file exists, or how large it is.
+    /// If the program cannot determine whether the file exists, or how large it is.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::stat(path),

@@ -68,7 +68,7 @@ pub enum LibraryError {
         /// The name that was added before.
         other: String,
     },
-    /// Some textures state no licence, and the writer was not told to allow this.
+    /// Some textures state no licence, and the options of the writer do not allow this.
     #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
     Unlicensed {
         /// Name of the first texture without a licence.

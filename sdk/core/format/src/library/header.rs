@@ -7,8 +7,8 @@ use crate::library::limits::Limits;
 use crate::library::page::crc32;
 use crate::library::rules as rule;
 
-/// First bytes of every library. As in PNG, one byte is not ASCII and both kinds of line ends
-/// follow. A transfer in text mode changes these bytes, so a reader detects it.
+/// First bytes of every library. As in PNG, they contain a byte that is not ASCII and both kinds of
+/// line ends. A transfer in text mode changes these bytes, so a reader detects such a transfer.
 pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
 /// File extension of libraries.
 pub const EXTENSION: &str = "htexlib";

@@ -1,5 +1,5 @@
-//! The index of an open library. It does no input or output. It tells the caller where pages and
-//! textures are in the file, and decodes their bytes.
+//! The index of an open library. The index does not read the file itself. It tells the caller where
+//! pages and textures are in the file, and decodes the bytes that the caller has read.
 
 use std::ops::Range;
 
@@ -94,7 +94,7 @@ impl Index {
         self.root.leaf(leaf)
     }
 
-    /// Decodes the entries of a leaf page from its bytes. They are sorted by name.
+    /// Decodes the entries of a leaf page from its bytes. The entries are sorted by name.
     ///
     /// # Errors
     /// [`LibraryError::Invalid`] if the page breaks a rule.

@@ -57,7 +57,7 @@ fn direction_of_library(runner: &Runner) -> Option<Direction> {
 /// Runs one check in this process. A crash ends the process.
 ///
 /// # Errors
-/// When no check has this name.
+/// Returns an error if no check has this name.
 pub fn run_one(
     subject: &Subject,
     name: &str,

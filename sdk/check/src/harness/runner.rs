@@ -79,7 +79,7 @@ pub(crate) fn run_all<'a, Case: 'a>(
 /// `owner` returns the check to which a loading error belongs.
 ///
 /// # Errors
-/// When the table has no check of this name.
+/// Returns an error if the table has no check of this name.
 pub fn run_one<Case, Error: Display>(
     checks: &[Check<Case>],
     name: &str,

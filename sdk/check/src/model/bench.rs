@@ -77,7 +77,7 @@ struct Runner {
 /// Each model plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
-/// [`CheckError::Model`] when a model cannot be fitted or fails to render.
+/// Returns [`CheckError::Model`] when a model cannot be fitted or fails to render.
 pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, CheckError> {
     let mut runners = Vec::new();
     for subject in subjects {

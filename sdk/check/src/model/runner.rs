@@ -41,7 +41,7 @@ fn readable(file: &Path) -> Result<(), CheckError> {
 /// Runs the checks, each in a separate process.
 ///
 /// # Errors
-/// When the file cannot be read, or `only` names an unknown check.
+/// Returns an error if the file cannot be read, or `only` names an unknown check.
 pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
     readable(file)?;
     let chosen = match &options.only {
@@ -67,7 +67,7 @@ pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
 /// Runs one check in this process. A crash ends the process.
 ///
 /// # Errors
-/// When the file cannot be read, or no check has this name.
+/// Returns an error if the file cannot be read, or no check has this name.
 pub fn run_one(file: &Path, name: &str, settings: Settings<'_>) -> Result<Finding, CheckError> {
     readable(file)?;
     let load = || Case::load(file, settings);

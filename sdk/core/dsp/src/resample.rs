@@ -68,7 +68,8 @@ impl Resampler {
     /// conversion is needed.
     ///
     /// # Errors
-    /// If a rate is outside 1 mHz to 10 MHz, or the rates differ by more than a factor of 10,000.
+    /// Returns an error if a rate is outside 1 mHz to 10 MHz, or the rates differ by more than a
+    /// factor of 10,000.
     pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Option<Self>, UnusableRates> {
         Self::with_specs(specs(from_hz, to_hz, top_hz)?)
     }

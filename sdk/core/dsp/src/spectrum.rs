@@ -68,7 +68,7 @@ impl SegmentAnalyzer {
     /// sums. Does not allocate.
     ///
     /// # Errors
-    /// If `segment` or `bins` does not have the length of the analyser.
+    /// Returns an error if `segment` or `bins` does not have the length of the analyser.
     pub fn analyze(
         &mut self,
         segment: &[f64],
@@ -89,7 +89,7 @@ impl SegmentAnalyzer {
     /// no window.
     ///
     /// # Errors
-    /// If `segment` or `bins` does not have the length of the analyser.
+    /// Returns an error if `segment` or `bins` does not have the length of the analyser.
     pub fn transform(
         &mut self,
         segment: &[f64],

@@ -110,7 +110,7 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
 /// its values.
 ///
 /// # Errors
-/// [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it,
+/// Returns [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it,
 /// [`WriteError::Layout`] if `flat` does not match `fields`.
 ///
 /// ```
@@ -145,8 +145,8 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
 /// writer of a model's parameters rounds with this function.
 ///
 /// # Errors
-/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the field cannot store any
-/// value in its range.
+/// Returns the errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the field cannot
+/// store any value in its range.
 pub fn round_within(
     fields: &[StoredField],
     model: &Descriptor,

@@ -15,8 +15,8 @@ impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Invalid`] if one of the findings is an error. The returned error contains all
-    /// findings.
+    /// Returns [`ReadError::Invalid`] if one of the findings is an error. The returned error
+    /// contains all findings.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::from_bytes_with(bytes, &Limits::default())
     }
@@ -33,7 +33,8 @@ impl Asset {
     /// Reads an asset from a file, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Io`] if the file cannot be read, and the errors of [`Self::from_bytes`].
+    /// Returns [`ReadError::Io`] if the file cannot be read, and the errors of
+    /// [`Self::from_bytes`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let limits = Limits::default();
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)

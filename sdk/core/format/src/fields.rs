@@ -104,8 +104,8 @@ enum Part {
 /// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// If any fields do not match. The list contains all mismatches; the mismatches of stored fields
-/// come first, in the order of the fields.
+/// Returns an error if any fields do not match. The list contains all mismatches; the mismatches of
+/// stored fields come first, in the order of the fields.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,
@@ -169,7 +169,7 @@ impl FieldOrder<'_> {
     /// Rearranges a flat array from the order of the stored fields to the model's order.
     ///
     /// # Errors
-    /// [`WriteError::Layout`] if the array does not match the stored fields.
+    /// Returns [`WriteError::Layout`] if the array does not match the stored fields.
     pub fn arrange(&self, flat: &[f64]) -> Result<Vec<f64>, WriteError> {
         let stored = split(self.stored, flat)?;
         let mut arranged = Vec::with_capacity(flat.len());

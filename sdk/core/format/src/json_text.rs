@@ -13,7 +13,7 @@ use htex_base::finding::Place;
 /// a key and others the last. The parser itself limits the nesting depth to 128.
 ///
 /// # Errors
-/// If the text is not JSON, nests too deep, or has a key twice in an object.
+/// Returns an error if the text is not JSON, nests too deep, or has a key twice in an object.
 ///
 /// ```
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "b": 1 }"#).is_ok());

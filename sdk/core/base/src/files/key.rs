@@ -27,8 +27,8 @@ impl Key {
     /// Reads the key with this name in a folder. Creates a random key if there is none.
     ///
     /// # Errors
-    /// If the folder or the file belongs to another user, if others can write to the folder or
-    /// access the file, or if the system reports an error.
+    /// Returns an error if the folder or the file belongs to another user, if others can write to
+    /// the folder or access the file, or if the system reports an error.
     pub fn load_or_create(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
@@ -44,7 +44,7 @@ impl Key {
     /// exists only in this value.
     ///
     /// # Errors
-    /// If the system provides no random numbers.
+    /// Returns an error if the system provides no random numbers.
     pub fn passing() -> io::Result<Self> {
         Ok(Self(random()?))
     }

@@ -134,8 +134,8 @@ impl FileInProgress {
     /// Creates the temporary file for the target `path`.
     ///
     /// # Errors
-    /// If `path` is a folder or a dangling link, its folder does not exist, or the system reports
-    /// an error.
+    /// Returns an error if `path` is a folder or a dangling link, its folder does not exist, or the
+    /// system reports an error.
     pub fn create(path: &Path) -> io::Result<Self> {
         Target::new(path).map(Self)
     }
@@ -195,7 +195,7 @@ impl Scratch {
     /// temporary files.
     ///
     /// # Errors
-    /// If the folder does not exist, or the system reports an error.
+    /// Returns an error if the folder does not exist, or the system reports an error.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let path = followed(path)?;
         let is_special = path.metadata().is_ok_and(|is| !is.is_file());
@@ -224,7 +224,7 @@ impl Drop for Scratch {
 /// succeeds, the temporary file is renamed to `path`.
 ///
 /// # Errors
-/// Errors of `write` and of the system. After an error, the file at `path` is unchanged.
+/// Returns errors of `write` and of the system. After an error, the file at `path` is unchanged.
 pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,

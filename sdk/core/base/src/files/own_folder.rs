@@ -49,7 +49,7 @@ impl OwnFolder {
     /// Commands use this folder for files that they write next to the named file.
     ///
     /// # Errors
-    /// If the path does not end in a name.
+    /// Returns an error if the path does not end in a name.
     pub fn of_file(path: &Path) -> io::Result<(Self, PathBuf)> {
         let no_name = || io::Error::new(ErrorKind::InvalidInput, "the path ends in no file name");
         let name = path.file_name().ok_or_else(no_name)?;
@@ -65,8 +65,8 @@ impl OwnFolder {
     /// path. An empty path stands for the folder itself.
     ///
     /// # Errors
-    /// If something on the way to the entry is a link or is not a folder, or if the path leads out
-    /// of this folder.
+    /// Returns an error if something on the way to the entry is a link or is not a folder, or if
+    /// the path leads out of this folder.
     pub fn entry_path(&self, inside: &Path) -> io::Result<PathBuf> {
         let mut path = self.folder.clone();
         let mut parts = inside.components().peekable();
@@ -86,8 +86,8 @@ impl OwnFolder {
     /// Creates a folder and the missing folders above it. Does not change an existing folder.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error if the entry is not a folder or is a link, and
-    /// errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error if the entry is not a folder or is a
+    /// link, and errors of the system.
     pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_itself()?;
         let mut folders: Vec<&Path> = inside.ancestors().collect();
@@ -107,8 +107,8 @@ impl OwnFolder {
     /// Opens a regular file for reading.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error if the entry is not a regular file or is a
-    /// link, and errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error if the entry is not a regular file or
+    /// is a link, and errors of the system.
     pub fn open(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true))
     }
@@ -125,8 +125,8 @@ impl OwnFolder {
     /// folders above the file. For most files, use [`Self::replace`] instead, which is atomic.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], and an error if the file, or anything else of this
-    /// name, exists.
+    /// Returns the errors of [`Self::make_folder`], and an error if the file, or anything else of
+    /// this name, exists.
     pub fn create(&self, inside: &Path) -> io::Result<File> {
         let path = self.entry(inside)?;
         let mut options = OpenOptions::new();
@@ -141,8 +141,8 @@ impl OwnFolder {
     /// renames it. Replaces a link of the same name. Creates missing folders above the file.
     ///
     /// # Errors
-    /// Errors of `write` and of the system, the errors of [`Self::make_folder`], and an error if a
-    /// folder has this name. After an error, the previous file is unchanged.
+    /// Returns errors of `write` and of the system, the errors of [`Self::make_folder`], and an
+    /// error if a folder has this name. After an error, the previous file is unchanged.
     pub fn replace(
         &self,
         inside: &Path,
@@ -158,7 +158,7 @@ impl OwnFolder {
     /// name when [`Batch::finish`] returns, or earlier.
     ///
     /// # Errors
-    /// The errors of [`Self::replace`] and of [`Batch::write`].
+    /// Returns the errors of [`Self::replace`] and of [`Batch::write`].
     pub fn write_with(&self, batch: &mut Batch, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         batch.write_in_place_of(self.entry(inside)?, self.readable_by, bytes)
     }
@@ -167,8 +167,8 @@ impl OwnFolder {
     /// folders above the file.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], and an error if a link, or anything except a regular
-    /// file, has this name.
+    /// Returns the errors of [`Self::make_folder`], and an error if a link, or anything except a
+    /// regular file, has this name.
     pub fn path_to_write(&self, inside: &Path) -> io::Result<PathBuf> {
         let path = self.entry(inside)?;
         refuse_link(&path)?;
@@ -181,7 +181,7 @@ impl OwnFolder {
     /// Reads a regular file of at most `most_bytes`.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`] and [`read_regular`], and an error for a link.
+    /// Returns the errors of [`Self::entry_path`] and [`read_regular`], and an error for a link.
     pub fn read(&self, inside: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         let path = self.entry_path(inside)?;
         refuse_link(&path)?;
@@ -191,8 +191,8 @@ impl OwnFolder {
     /// Opens a lock file: creates it, or opens an existing file without changing its contents.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error if the entry is not a regular file or is a
-    /// link, and errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error if the entry is not a regular file or
+    /// is a link, and errors of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
         self.open_with(inside, options.write(true).create(true).truncate(false))
@@ -213,8 +213,8 @@ impl OwnFolder {
     /// Does not flush the file to disk.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], an error if a folder has this name, and errors of the
-    /// system.
+    /// Returns the errors of [`Self::make_folder`], an error if a folder has this name, and errors
+    /// of the system.
     pub fn write(&self, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         let mut part = inside.as_os_str().to_owned();
         part.push(PART);
@@ -251,7 +251,7 @@ impl OwnFolder {
     /// file is not an error.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error for a folder, and errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error for a folder, and errors of the system.
     pub fn remove(&self, inside: &Path) -> io::Result<()> {
         let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -275,7 +275,7 @@ impl OwnFolder {
     /// the folder is missing.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error for a link, and errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error for a link, and errors of the system.
     pub fn files(&self, inside: &Path) -> io::Result<Vec<String>> {
         let path = self.entry_path(inside)?;
         match check_folder(&path) {
@@ -300,8 +300,8 @@ impl OwnFolder {
     /// folder is not an error.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], an error if the entry is not a folder or is a link, and
-    /// errors of the system.
+    /// Returns the errors of [`Self::entry_path`], an error if the entry is not a folder or is a
+    /// link, and errors of the system.
     pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
         let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),

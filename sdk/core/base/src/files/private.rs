@@ -9,7 +9,8 @@ use std::path::Path;
 /// is not writable by others.
 ///
 /// # Errors
-/// If the folder cannot be created, belongs to another user, or is writable by others.
+/// Returns an error if the folder cannot be created, belongs to another user, or is writable by
+/// others.
 pub fn folder(path: &Path) -> io::Result<()> {
     make_folder(path)?;
     // Others may read the folder: each file in it is private by its own permissions.
@@ -71,7 +72,8 @@ pub fn only_user(options: &mut std::fs::OpenOptions) -> &mut std::fs::OpenOption
 /// Opens a private file, which others may neither read nor write.
 ///
 /// # Errors
-/// If the file cannot be opened, belongs to another user, or is readable or writable by others.
+/// Returns an error if the file cannot be opened, belongs to another user, or is readable or
+/// writable by others.
 pub fn file(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     check(&file.metadata()?, 0o077)?;

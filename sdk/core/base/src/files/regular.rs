@@ -13,8 +13,8 @@ use std::path::Path;
 /// Opens a regular file. Follows links, and does not wait for the writer of a pipe.
 ///
 /// # Errors
-/// If there is no such file, if it is a folder, a pipe, a socket or a device, or if the system
-/// reports an error.
+/// Returns an error if there is no such file, if it is a folder, a pipe, a socket or a device, or
+/// if the system reports an error.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -28,7 +28,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 /// Checks that a path leads to a regular file.
 ///
 /// # Errors
-/// The errors of [`open_regular`] that can be detected without opening the file.
+/// Returns the errors of [`open_regular`] that can be detected without opening the file.
 pub fn check_regular_at(path: &Path) -> io::Result<()> {
     check_regular(&path.metadata()?)
 }
@@ -36,7 +36,7 @@ pub fn check_regular_at(path: &Path) -> io::Result<()> {
 /// Reads a regular file of at most `most_bytes`.
 ///
 /// # Errors
-/// The errors of [`open_regular`], and an error if the file is larger.
+/// Returns the errors of [`open_regular`], and an error if the file is larger.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -65,7 +65,7 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
 /// Reads a regular file of UTF-8 text, as [`read_regular`] does.
 ///
 /// # Errors
-/// The errors of [`read_regular`], and an error if the file is not UTF-8.
+/// Returns the errors of [`read_regular`], and an error if the file is not UTF-8.
 pub fn read_regular_text(path: &Path, most_bytes: u64) -> io::Result<String> {
     String::from_utf8(read_regular(path, most_bytes)?)
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))

@@ -56,7 +56,7 @@ pub fn listed(variable: &str) -> Vec<PathBuf> {
 /// name.
 ///
 /// # Errors
-/// If the folder cannot be read.
+/// Returns an error if the folder cannot be read.
 pub fn libraries_in(dir: &Path, other: Option<&str>) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(dir)? {

@@ -44,7 +44,7 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If the file does not exist, or is not a library for this machine.
+    /// Returns an error if the file does not exist, or is not a library for this machine.
     pub unsafe fn from_file(path: &Path) -> io::Result<Self> {
         // A loader searches its own folders for a bare name, and only an absolute path keeps it
         // from that.
@@ -59,7 +59,7 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If the loader does not find a library, or cannot load it.
+    /// Returns an error if the loader does not find a library, or cannot load it.
     pub unsafe fn from_system(name: &str) -> io::Result<Self> {
         // SAFETY: guaranteed by the caller.
         unsafe { load(OsStr::new(name)) }
@@ -73,7 +73,7 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If there is no such library, or it cannot be loaded.
+    /// Returns an error if there is no such library, or it cannot be loaded.
     pub unsafe fn from_name(path: &str) -> io::Result<Self> {
         let file = Path::new(path);
         let is_bare = file.components().count() == 1 && !file.is_absolute();
@@ -92,7 +92,8 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If the loader finds none of the libraries. The message gives the reason for each library.
+    /// Returns an error if the loader finds none of the libraries. The message gives the reason for
+    /// each library.
     pub unsafe fn installed(names: &[&str]) -> io::Result<Self> {
         let mut reasons = Vec::new();
         for name in names {
@@ -129,7 +130,7 @@ impl<E> Symbols<'_, E> {
     /// The symbol has the type `T`.
     ///
     /// # Errors
-    /// If the library does not have the function.
+    /// Returns an error if the library does not have the function.
     pub unsafe fn get<T: Copy>(&self, name: &'static str) -> Result<T, E> {
         // SAFETY: guaranteed by the caller.
         unsafe { self.library.symbol(name) }.ok_or_else(|| (self.missing)(name))

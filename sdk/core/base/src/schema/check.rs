@@ -48,7 +48,7 @@ impl Schema {
     /// Compiles a schema, of draft 2020-12 or of the draft that its `$schema` names.
     ///
     /// # Errors
-    /// If `schema` is not a valid schema, or refers to another schema.
+    /// Returns an error if `schema` is not a valid schema, or refers to another schema.
     pub fn new(schema: &Value) -> Result<Self, ValidationError<'static>> {
         jsonschema::options().with_retriever(Nothing).build(schema).map(Self)
     }

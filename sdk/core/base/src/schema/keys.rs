@@ -39,7 +39,8 @@ fn place(path: &[String]) -> String {
 /// Refuses a document with keys that the schema of `T` does not contain.
 ///
 /// # Errors
-/// If the document has such keys. The error's text has one sentence for each of these keys.
+/// Returns an error if the document has such keys. The error's text has one sentence for each of
+/// these keys.
 pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     let schema = crate::schema::crossing::<T>("", "");
     let unknown = unknown_keys(&schema, document);

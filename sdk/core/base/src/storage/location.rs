@@ -63,8 +63,8 @@ impl Location {
     /// other argument is a local path, which is used unchanged, even if it is not Unicode.
     ///
     /// # Errors
-    /// If the argument is a URI that has another scheme, has a user name or password, is
-    /// incomplete, or is not Unicode.
+    /// Returns an error if the argument is a URI that has another scheme, has a user name or
+    /// password, is incomplete, or is not Unicode.
     pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
         let lossy = argument.to_string_lossy();
         let Some((scheme, rest)) = split_scheme(&lossy) else {

@@ -115,7 +115,7 @@ impl Storage {
     /// Reads a whole file of at most `most_bytes`.
     ///
     /// # Errors
-    /// If the file is missing, larger, or cannot be read.
+    /// Returns an error if the file is missing, larger, or cannot be read.
     pub fn read(&self, location: &Location, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::read(path, most_bytes),
@@ -145,7 +145,8 @@ impl Storage {
     /// Returns the size and version of a file, or `None` if the file does not exist.
     ///
     /// # Errors
-    /// If the program cannot determine whether the file exists, or how large it is.
+    /// Returns an error if the program cannot determine whether the file exists, or how large it
+    /// is.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::stat(path),
@@ -164,7 +165,7 @@ impl Storage {
     /// Returns the size of a file, bytes.
     ///
     /// # Errors
-    /// The errors of [`Self::stat`], and an error if the file does not exist.
+    /// Returns the errors of [`Self::stat`], and an error if the file does not exist.
     pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
         let stat = self.stat(location)?;
         stat.map(|stat| stat.bytes).ok_or_else(|| StorageProblem::Missing.at_place(location))
@@ -173,7 +174,8 @@ impl Storage {
     /// Reads a range of bytes. To read several ranges of one file, use [`Self::open`].
     ///
     /// # Errors
-    /// The errors of [`Self::read`], and an error if the range ends after the end of the file.
+    /// Returns the errors of [`Self::read`], and an error if the range ends after the end of the
+    /// file.
     pub fn read_range(
         &self,
         location: &Location,
@@ -213,8 +215,8 @@ impl Storage {
     /// `*.csv`, `**/*.htex`. Returns at most 1,000,000 files.
     ///
     /// # Errors
-    /// The errors of [`Self::read`], an error for a malformed pattern, and an error for a web
-    /// server.
+    /// Returns the errors of [`Self::read`], an error for a malformed pattern, and an error for a
+    /// web server.
     pub fn list(&self, folder: &Location, pattern: &str) -> Result<Vec<Entry>, StorageError> {
         let pattern = listing::pattern(folder, pattern)?;
         let mut found = match folder.place() {
@@ -237,7 +239,7 @@ impl Storage {
     /// Writes or replaces a file, completely or not at all.
     ///
     /// # Errors
-    /// If the file cannot be written. An existing file is then unchanged.
+    /// Returns an error if the file cannot be written. An existing file is then unchanged.
     pub fn write(&self, location: &Location, bytes: &[u8]) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::write(path, bytes),
@@ -249,7 +251,7 @@ impl Storage {
     /// MiB. After a failure, the parts are removed.
     ///
     /// # Errors
-    /// The errors of [`Self::write`], and an error if the local file cannot be read.
+    /// Returns the errors of [`Self::write`], and an error if the local file cannot be read.
     pub fn write_file(&self, location: &Location, file: &Path) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::write_copy(path, file),
@@ -260,7 +262,7 @@ impl Storage {
     /// Removes a file. A missing file is not an error.
     ///
     /// # Errors
-    /// If the file cannot be removed. A file on a web server can never be removed.
+    /// Returns an error if the file cannot be removed. A file on a web server can never be removed.
     pub fn remove(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::remove(path),
@@ -272,7 +274,7 @@ impl Storage {
     /// the scheme of the URI and the settings of the store.
     ///
     /// # Errors
-    /// If the file could not be written.
+    /// Returns an error if the file could not be written.
     pub fn check_writable(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(_) => Ok(()),

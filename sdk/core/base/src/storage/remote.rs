@@ -125,7 +125,8 @@ impl Remote {
     /// the first request already returned these bytes.
     ///
     /// # Errors
-    /// If the range ends after the end of the file, the file was replaced, or it cannot be read.
+    /// Returns an error if the range ends after the end of the file, the file was replaced, or it
+    /// cannot be read.
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), StorageError> {
         let end = offset.saturating_add(buffer.len() as u64);
         if end > self.len {

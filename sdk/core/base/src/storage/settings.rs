@@ -47,7 +47,7 @@ impl Settings {
     /// Returns the defaults with the total time from the environment.
     ///
     /// # Errors
-    /// If `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.
+    /// Returns an error if `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.
     pub fn from_variables(variables: &Variables) -> Result<Self, StorageError> {
         let mut settings = Self::default();
         if let Some(text) = variables.get(TIMEOUT) {

@@ -97,7 +97,7 @@ impl Index {
     /// Decodes the entries of a leaf page from its bytes. The entries are sorted by name.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if the page breaks a rule.
+    /// Returns [`LibraryError::Invalid`] if the page breaks a rule.
     pub fn read_leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, LibraryError> {
         Ok(self.leaf(leaf, bytes)?)
     }
@@ -125,7 +125,7 @@ impl Index {
     /// and compares the result with the texture's hash.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if the bytes do not have the texture's hash.
+    /// Returns [`LibraryError::Invalid`] if the bytes do not have the texture's hash.
     pub fn assemble<B: AsRef<[u8]>>(
         &self,
         entry: &Entry,

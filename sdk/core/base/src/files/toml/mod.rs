@@ -68,8 +68,8 @@ impl TomlError {
 /// ```
 ///
 /// # Errors
-/// If the text is not TOML, contains a value of another type, or is nested deeper than
-/// [`MOST_LEVELS`].
+/// Returns an error if the text is not TOML, contains a value of another type, or is nested deeper
+/// than [`MOST_LEVELS`].
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     check_nesting(text)?;
     toml::from_str(text).map_err(|error| TomlError::from_parser(text, &error))

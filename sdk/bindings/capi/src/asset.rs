@@ -11,8 +11,8 @@ use crate::pointers::{needed_text, place, slice, slice_mut, text, write_text};
 use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
-/// An open asset: a texture from a .htex file. Several threads may use it at the same time. An `id`
-/// of 0 never stands for an asset.
+/// An open asset: a texture from a .htex file. Several threads may use an asset at the same time.
+/// An `id` of 0 never stands for an asset.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_asset {

@@ -5,7 +5,8 @@ use std::ffi::c_char;
 
 use crate::status::htex_status;
 
-/// An open device. Only one thread at a time may use it. An `id` of 0 never stands for a device.
+/// An open device. Only one thread at a time may use a device. An `id` of 0 never stands for a
+/// device.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_device {
@@ -64,14 +65,14 @@ pub unsafe extern "C" fn htex_device_info_json(
     unsafe { calls::info_json(name, settings, out, capacity, length) }
 }
 
-/// [any thread; asks drivers] Opens a device, which is then at rest. `name` is its short name, such
-/// as `sdl`, `parametric`, `channels` or `file`, or its id. `settings` holds lines of the form
-/// NAME=VALUE; NULL selects the defaults. `rate_hz` is the sample rate; 0 selects the device's own.
-/// The samples must have the quantity and unit that htex_device_info_json states for the device. If
-/// the device expects fractions of full scale, set the gain of the voice so that it converts
-/// newtons to these fractions. This call refuses a finger display that is driven by a voltage. Such
-/// a display needs a separate process that removes the voltage if the program dies; use the command
-/// `htex play`, which starts this process.
+/// [any thread; asks drivers] Opens a device, which is then at rest. `name` is the device's id, or
+/// its short name, such as `sdl`, `parametric`, `channels` or `file`. `settings` holds lines of the
+/// form NAME=VALUE; NULL selects the defaults. `rate_hz` is the sample rate; 0 selects the device's
+/// own. The samples must have the quantity and unit that htex_device_info_json states for the
+/// device. If the device expects fractions of full scale, set the gain of the voice so that it
+/// converts newtons to these fractions. This call refuses a finger display that is driven by a
+/// voltage. Such a display needs a separate process that removes the voltage if the program dies;
+/// use the command `htex play`, which starts this process.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_open(
     name: *const c_char,
@@ -118,15 +119,15 @@ pub unsafe extern "C" fn htex_device_status(
 }
 
 /// [one thread at a time; waits] Plays all samples that were written, then brings the device to
-/// rest. The device `file` saves its file under the final name. No more samples can be written
-/// afterwards.
+/// rest. The device `file` now saves its file under the final name. No more samples can be written
+/// after this call.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_finish(device: htex_device) -> htex_status {
     calls::finish(device)
 }
 
 /// [one thread at a time; may wait] Frees a device. If htex_device_finish was not called before,
-/// the device goes to rest at once, and the device `file` leaves no file behind.
+/// the device goes to rest at once. The device `file` then discards its unfinished file.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_free(device: htex_device) -> htex_status {
     calls::free(device)

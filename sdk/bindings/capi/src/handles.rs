@@ -3,8 +3,8 @@
 //!
 //! A lookup neither locks nor allocates. At any time, either one thread uses an object exclusively,
 //! or any number of threads read it. A counter in the object's slot enforces this rule: a call that
-//! would break the rule fails at once. Handles carry the kind of their object, so passing a voice
-//! where an asset is expected is an error.
+//! would break the rule fails at once. A handle also contains the kind of its object, so passing a
+//! voice where an asset is expected is an error.
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};

@@ -9,8 +9,8 @@ use crate::options::htex_open_options;
 use crate::reader::htex_reader;
 use crate::status::htex_status;
 
-/// An open library: a .htexlib file with any number of textures. Several threads may use it at the
-/// same time. An `id` of 0 never stands for a library.
+/// An open library: a .htexlib file with any number of textures. Several threads may use a library
+/// at the same time. An `id` of 0 never stands for a library.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_library {

@@ -1,5 +1,5 @@
-//! Memory that JavaScript and the library pass to each other: one side allocates it, the other
-//! frees it.
+//! Memory that JavaScript and the library pass to each other. One side allocates the memory, and
+//! the other side frees it.
 
 use std::alloc::{Layout, alloc, dealloc};
 

@@ -20,7 +20,7 @@ pub struct htex_motion {
     /// Normal force, N; finite and not negative.
     pub force_n: f64,
     /// Position along the finger's path, mm, positive or negative; NAN if unknown. Only models that
-    /// follow the position use it.
+    /// follow the position use this value.
     pub position_mm: f64,
     /// Place on the surface: coordinate x, mm, positive or negative. If `x_mm` or `y_mm` is NAN,
     /// the place is unknown. Only models that map a surface use the place.

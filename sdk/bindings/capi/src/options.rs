@@ -25,8 +25,8 @@ pub struct htex_bytes {
 /// WASM modules are not loaded. A call that needs the model in such a module returns
 /// HTEX_STATUS_NO_MODEL.
 pub const HTEX_ENGINE_OFF: u32 = 0;
-/// WASM modules run without signal handlers. Instead, their code checks the bounds of each memory
-/// access.
+/// WASM modules run without signal handlers. Instead, the code of the modules checks the bounds of
+/// each memory access.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
 /// WASM modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
 /// stay installed after htex_shutdown, and pass on all signals that do not come from a module.
@@ -39,8 +39,8 @@ pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 /// threads, files or signal handlers.
 ///
 /// Assets may embed models as WASM modules. To run them, turn on a WASM engine with `engine`. Only
-/// the library in `lib/whole` contains an engine. In other builds, opening an asset with an engine
-/// returns HTEX_STATUS_UNSUPPORTED. The engine compiles a module when it is first used, unless the
+/// the library in `lib/whole` contains an engine. Other builds return HTEX_STATUS_UNSUPPORTED if
+/// `engine` turns on an engine. The engine compiles a module when it is first used, unless the
 /// compiled module is in `cache`. Compiling takes 0.07 to 0.4 s for `examples/model-c-bursts`.
 /// While a module is loaded, one thread wakes every 50 ms to stop calls that exceed their time
 /// limit. Modules have limits: 64 MiB of memory per voice, 0.5 s per block of samples and 5 s to
@@ -96,7 +96,7 @@ pub struct htex_voice_options {
     /// a sound of this length is computed once and repeated. "filter:TAPS": noise goes through a
     /// filter with this number of taps.
     pub synthesis: *const c_char,
-    /// Gain of the samples; 0 selects a gain of 1. htex_voice_set_gain changes it later.
+    /// Gain of the samples; 0 selects a gain of 1. htex_voice_set_gain changes the gain later.
     pub gain: f64,
     /// Largest absolute value of a sample after the gain, in the asset's unit; 0 for no limit. The
     /// gain drops at once when a sample would exceed the limit, and recovers with a time constant

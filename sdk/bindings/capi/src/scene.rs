@@ -8,7 +8,7 @@ use crate::reader::htex_files;
 use crate::status::htex_status;
 
 /// A scene that plays: surfaces, a finger's motion over them, and the samples that result. Only one
-/// thread at a time may use it. An `id` of 0 never stands for a scene.
+/// thread at a time may use a scene. An `id` of 0 never stands for a scene.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene {
@@ -45,8 +45,8 @@ pub struct htex_finger {
 }
 
 /// [any thread; reads files] Loads a scene file and its assets, and plans which processing stages
-/// the scene needs. The scene's own device is not used, so its samples have the unit of the assets.
-/// `open` and `options` may be NULL for the defaults.
+/// the scene needs. The call does not open the device that the scene file names, so the rendered
+/// samples have the unit of the assets. `open` and `options` may be NULL for the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open(
     path: *const c_char,
@@ -72,7 +72,8 @@ pub unsafe extern "C" fn htex_scene_open_wide(
 }
 
 /// [any thread] Does the same as htex_scene_open, for a scene file in memory. The library reads the
-/// other files of the scene through `files`. It uses the bytes and `files` only during the call.
+/// other files of the scene through `files`. The library uses the bytes and `files` only during the
+/// call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_from_bytes(
     bytes: *const u8,

@@ -1,4 +1,4 @@
-//! Files of other formats: imports them as textures, and exports textures to them.
+//! Imports files of other formats as textures, and exports textures to files of other formats.
 
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
-//! Models that are written in Python. They run only in this process, and under the global
+//! Models that are written in Python. Such models run only in this process, and under the global
 //! interpreter lock.
 //!
-//! Each model is an object that implements [`RuntimeModel`]. The host checks its arguments and
-//! results as for any other model. The host passes on only the text of an exception. So the package
-//! raises a new exception to the user, and sets the original exception as its cause.
+//! Each model is an object that implements [`RuntimeModel`]. The host checks the arguments and
+//! results of this object as for any other model. The host passes on only the text of an exception.
+//! So the package raises a new exception to the user, and sets the original exception as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

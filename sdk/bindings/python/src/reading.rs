@@ -1,4 +1,4 @@
-//! Recordings: where they come from, and how they are read.
+//! Sources of recordings, and settings for reading them.
 
 use std::path::{Path, PathBuf};
 

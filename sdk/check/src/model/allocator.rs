@@ -3,9 +3,10 @@
 //! The dynamic linker writes the addresses of `malloc` and related functions into a table of each
 //! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces these addresses
 //! with the addresses of functions that count each call and then call the allocator. It replaces
-//! them in every library of the process, including the C library and the C++ runtime. So `new`,
-//! `strdup` and the `Vec` of a Rust library are also counted. Each thread has its own count. The
-//! table of the program itself is not changed, so the host's own allocations are not counted.
+//! them in every library of the process, including the C library and the C++ runtime. So
+//! allocations by `new`, by `strdup` and by the `Vec` of a Rust library are also counted. Each
+//! thread has its own count. The table of the program itself is not changed, so the host's own
+//! allocations are not counted.
 //!
 //! This method does not detect allocations by an allocator that is linked statically into a library
 //! and maps pages itself, or calls to an address that `dlsym` returned. It also does not detect

@@ -29,7 +29,7 @@ pub struct Subject {
 /// Minimum, median and spread of the times over the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
-    /// The fastest round, ns. It is the time without other load on the machine.
+    /// The fastest round, ns. This round is closest to the time without other load on the machine.
     pub min_ns: f64,
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.
@@ -73,8 +73,8 @@ struct Runner {
     rounds: [Vec<f64>; 5],
 }
 
-/// Measures models in one interleaved run, so that other load on the machine affects all equally.
-/// Each model plays parameters fitted to a reference spectrum.
+/// Measures models in one interleaved run, so that other load on the machine affects all models
+/// equally. Each model plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
 /// Returns [`CheckError::Model`] when a model cannot be fitted or fails to render.

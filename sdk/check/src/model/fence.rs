@@ -1,5 +1,5 @@
-//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. They detect that a
-//! call reads or writes beyond an array, so that the checker can name this call.
+//! Arrays that are followed by guard values and, on 64-bit Linux, by a protected page. They detect
+//! that a call reads or writes beyond an array, so that the checker can name this call.
 
 use crate::harness::Finding;
 

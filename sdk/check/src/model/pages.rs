@@ -1,4 +1,4 @@
-//! Memory that ends at the end of a page and has protected pages behind it (a fence). A signal
+//! Memory that ends at the end of a page and is followed by protected pages (a fence). A signal
 //! handler names the call that touched a fence.
 //!
 //! A debugger's allocator or an instrumented build could also detect such accesses. But the checker

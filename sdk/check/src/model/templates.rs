@@ -1,5 +1,5 @@
-//! The project templates that `htex plugin new` writes for a new model: files and their contents,
-//! with placeholders (`templates/README.md`).
+//! The project templates that `htex plugin new` writes for a new model. A template is a list of
+//! files with their contents, which contain placeholders (`templates/README.md`).
 
 /// A project in Rust: paths relative to the project's folder, and file contents.
 pub const RUST: &[(&str, &str)] = &[

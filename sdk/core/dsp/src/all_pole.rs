@@ -81,7 +81,7 @@ impl AllPole {
         Some(filter)
     }
 
-    /// Raises the order to at least this one; the new reflection coefficients are 0.
+    /// Raises the filter's order to at least `order`. The new reflection coefficients are 0.
     pub fn raise_order(&mut self, order: usize) {
         if order > self.order() {
             // First get the state of the lattice at the present order.
@@ -97,8 +97,8 @@ impl AllPole {
         self.lattice.order()
     }
 
-    /// Returns the reflection coefficients. The caller may change them between samples; they must
-    /// stay inside (-1, 1). Does not allocate.
+    /// Returns the reflection coefficients. The caller may change the coefficients between samples;
+    /// each coefficient must stay inside (-1, 1). Does not allocate.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         if self.direct.take().is_some() {
             self.lattice.set_past(&self.past);
@@ -173,8 +173,8 @@ impl AllPole {
 }
 
 impl<'a> AllPoles<'a> {
-    /// Combines four filters. Returns `None` if one of them still runs as a lattice because its
-    /// coefficients changed.
+    /// Combines four filters. Returns `None` if one of the filters still runs as a lattice because
+    /// its coefficients changed.
     pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
         let direct = filters.iter().all(|filter| filter.direct.is_some());
         direct.then_some(Self(filters))

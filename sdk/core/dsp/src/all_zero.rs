@@ -39,13 +39,13 @@ impl AllZero {
         Some(filter)
     }
 
-    /// Raises the order to at least this one, but at most [`MAX_ORDER`]. The new coefficients
-    /// are 0.
+    /// Raises the filter's order to at least `order`, but not above [`MAX_ORDER`]. The new
+    /// coefficients are 0.
     pub fn raise_order(&mut self, order: usize) {
         self.order = self.order.max(order.min(MAX_ORDER));
     }
 
-    /// Returns the coefficients. The caller may change them between samples.
+    /// Returns the coefficients. The caller may change the coefficients between samples.
     pub fn coefficients_mut(&mut self) -> &mut [f64] {
         &mut self.coefficients[..self.order]
     }

@@ -1,8 +1,8 @@
 //! Steep filters that restrict noise to the band, if the noise is generated with a wider spectrum.
 //!
 //! A filter changes the RMS by up to 2 %, because of its ripple, and because half of the bin at the
-//! Nyquist frequency is missing. So a model that uses these filters computes its level after the
-//! filters, as a sum over a table of frequencies ([`PassedPower`]).
+//! Nyquist frequency is missing. So a model that uses these filters computes the level of its
+//! filtered noise, as a sum over a table of frequencies ([`PassedPower`]).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

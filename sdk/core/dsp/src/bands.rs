@@ -85,7 +85,7 @@ fn ratio_db(model: f64, reference: f64) -> f64 {
 }
 
 /// Returns the gain that gives a model's *magnitudes* the total energy of the reference: `sqrt(Σ
-/// reference² / Σ model²)`. It is 1 if either sum is zero or not finite.
+/// reference² / Σ model²)`. The gain is 1 if either sum is zero or not finite.
 ///
 /// To compare spectral shapes independently of level, multiply the model's band energies by the
 /// square of this gain.

@@ -100,9 +100,9 @@ impl BurgErrors {
 }
 
 /// Covariance estimate: least squares of the forward error, over the samples whose predecessors are
-/// all in the segment. The estimate is exact for noiseless resonances, but may be unstable. In that
-/// case [`stabilize`] makes it stable, and the result has `adjusted` set. `error` is the residual
-/// power per predicted sample before this correction.
+/// all in the segment. The estimate is exact for noiseless resonances, but may be unstable. An
+/// unstable estimate is made stable with [`stabilize`], and `adjusted` is then set in the result.
+/// `error` is the residual power per predicted sample before this correction.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let long: Vec<&[f64]> = segments.iter().copied().filter(|s| s.len() > order).collect();
     let count: usize = long.iter().map(|s| s.len() - order).sum();

@@ -1,12 +1,12 @@
 //! Distance of a model's magnitude spectrum from a reference: the error in third-octave bands, and
 //! the log-spectral distance bin by bin. No model of this project is fitted to either measure.
 //!
-//! Both functions take slices of equal length and ignore the excess of a longer slice. Both
-//! functions raise the model's magnitudes to at least 1e-9 of the reference's largest magnitude, so
-//! that the error of an empty band is large but finite.
+//! Both functions expect slices of equal length. If one slice is longer than the other, its excess
+//! values are ignored. Both functions raise the model's magnitudes to at least 1e-9 of the
+//! reference's largest magnitude, so that the error of an empty band is large but finite.
 //!
-//! The nine-band error ([`crate::bands`]) favours one model: the model `bands` with nine bands
-//! stores exactly the energies from which that error is computed.
+//! The nine-band error ([`crate::bands`]) favours the model `bands` with nine bands, because this
+//! model stores exactly the energies from which the nine-band error is computed.
 
 use alloc::vec::Vec;
 

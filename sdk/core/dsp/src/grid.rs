@@ -64,8 +64,8 @@ impl Band {
 }
 
 /// Returns the part of a component's power that the bins of a band measure through the periodic
-/// Hann window. It is 1 well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin
-/// and the first bin outside, and 0 far outside.
+/// Hann window. This part is 1 well inside the band, 5/6 at its edge bins, 1/2 midway between an
+/// edge bin and the first bin outside, and 0 far outside.
 ///
 /// A component near an edge also has power in bins outside the band, which do not count. Noise
 /// generators amplify such a component to compensate for this loss.

@@ -28,8 +28,8 @@ use crate::window::hann_main_lobe;
 /// the same as [`select_peaks`](crate::peaks::select_peaks), but interpolates frequencies and
 /// magnitudes between the bins.
 ///
-/// An edge bin counts as a maximum if it is above its only neighbour; its peak is at the edge or
-/// inside. A spectrum of one value has no peak.
+/// The first and the last bin also count as maxima if they are above their only neighbour; their
+/// peaks lie at the edge of the band or inside the band. A spectrum of one value has no peak.
 ///
 /// `frequency_hz` is the 5 Hz grid of a band, in hertz. If `frequency_hz` and `magnitude` differ in
 /// length, the excess values of the longer slice are ignored.

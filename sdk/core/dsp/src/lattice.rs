@@ -27,13 +27,14 @@ pub struct AllPoleLattice {
 }
 
 impl AllPoleLattice {
-    /// Makes a filter with zero state. It is stable for coefficients inside (-1, 1).
+    /// Makes a filter with zero state. The filter is stable if all reflection coefficients are
+    /// inside (-1, 1).
     pub fn new(reflection: &[f64]) -> Self {
         Self { reflection: reflection.to_vec(), delayed: alloc::vec![0.0; reflection.len()] }
     }
 
-    /// Raises the order to at least this one. The new coefficients are 0, so the filter stays the
-    /// same. Does not allocate after [`Self::reserve`] with this order.
+    /// Raises the filter's order to at least `order`. The new coefficients are 0, so the filter
+    /// stays the same. Does not allocate after [`Self::reserve`] with this order.
     pub fn raise_order(&mut self, order: usize) {
         let order = order.max(self.order());
         self.reflection.resize(order, 0.0);
@@ -56,8 +57,8 @@ impl AllPoleLattice {
         &self.reflection
     }
 
-    /// Returns the reflection coefficients. The caller may change them between samples; the state
-    /// does not change.
+    /// Returns the reflection coefficients. The caller may change the coefficients between samples;
+    /// the state does not change.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
     }

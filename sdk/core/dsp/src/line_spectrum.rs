@@ -108,8 +108,8 @@ pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 }
 
 /// Does the same as [`coefficients_of_lines`], but for a numerator, whose zeros may lie on the unit
-/// circle. So two lines may be equal, and a line may be 0 or π. Returns false if the lines descend,
-/// or if there are too many.
+/// circle. So two frequencies may be equal, and a frequency may be 0 or π. Returns false if the
+/// frequencies are not ascending, or if there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let mut cosines = [0.0; MOST_LINES];
     let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -126,8 +126,8 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 /// Does the same as [`zeros_of_lines`], but takes the cosines of at most [`MOST_LINES`] lines.
 ///
 /// The symmetric and the antisymmetric polynomial each consist of a fixed factor and the quadratics
-/// of every second line. The product of these quadratics is a palindrome, so only half of it is
-/// computed, for both polynomials together.
+/// of every second line. The coefficients of the product of these quadratics are a palindrome, so
+/// only half of them are computed. Both polynomials are computed together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
     // Clearing the memory for few lines takes less time than for many.
     match cosines.len() {

@@ -2,9 +2,9 @@
 //! Autoregressive model).
 //!
 //! A model of order p has p prediction coefficients, or, equivalently, p reflection coefficients.
-//! It is stable exactly if all reflection coefficients are inside (-1, 1). The reflection
-//! coefficient of stage m equals the last prediction coefficient of the model of order m, including
-//! its sign: `k_m = A_m`.
+//! The model is stable if, and only if, all reflection coefficients are inside (-1, 1). The
+//! reflection coefficient of stage m equals the last prediction coefficient of the model of order
+//! m, including its sign: `k_m = A_m`.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -189,9 +189,9 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
 }
 
 /// Limits the radius of every pole to `radius` (below 1). If a pole lies farther out, the result is
-/// `A_i g^i`, where the factor g moves the outermost pole to `radius`. This also corrects poles
-/// that lie outside the unit circle because the coefficients were rounded. If a coefficient is not
-/// finite, all coefficients of the result are zero.
+/// `A_i g^i`, where the factor g moves the outermost pole to `radius`. This function also corrects
+/// poles that lie outside the unit circle because the coefficients were rounded. If a coefficient
+/// is not finite, all coefficients of the result are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;

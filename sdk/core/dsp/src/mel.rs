@@ -69,8 +69,9 @@ impl MelBank {
     /// apex it is constant. Empty filters are skipped. `power` has as many elements as the bank has
     /// frequencies.
     ///
-    /// The result is smoother than the result of the pseudo-inverse, and never negative. But
-    /// [`Self::energies`] of the result differ slightly from the given energies.
+    /// The result is smoother than the result of the pseudo-inverse, and never negative. But if
+    /// [`Self::energies`] is applied to the result, the energies differ slightly from the given
+    /// energies.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank

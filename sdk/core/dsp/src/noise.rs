@@ -1,9 +1,9 @@
 //! Seeded Gaussian noise.
 //!
-//! The generator uses the Box–Muller transform for eight pairs of numbers at a time. It has its own
-//! series for the logarithm, sine and cosine. The series have no branches, so compilers vectorise
-//! them, and the results are bit-identical on every machine. On processors with registers of 512
-//! bits, two streams share a register.
+//! The generator uses the Box–Muller transform for eight pairs of numbers at a time. The generator
+//! contains its own series for the logarithm, sine and cosine. The series have no branches, so
+//! compilers vectorise them, and the results are bit-identical on every machine. On processors with
+//! registers of 512 bits, two streams share a register.
 
 use crate::root::sqrt_f32;
 

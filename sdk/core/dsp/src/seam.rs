@@ -1,7 +1,7 @@
 //! Seamless loops of samples.
 //!
-//! A cross-fade joins the end of the loop to its start. Its gains depend on the correlation of the
-//! two pieces, so that noise and tones both keep their power.
+//! A cross-fade joins the end of the loop to its start. The gains of the cross-fade depend on the
+//! correlation of the two pieces, so that both noise and tones keep their power.
 
 use alloc::vec::Vec;
 
@@ -28,9 +28,10 @@ impl Loop {
     /// Makes a loop of `samples`. A cross-fade of `fade` samples (at most half of all) mixes the
     /// end of `samples` into the start, so the loop is shorter than `samples` by `fade`.
     ///
-    /// The gains of the cross-fade are a sine and a cosine, divided by the square root of the power
-    /// that the sum would have, given the correlation of the two pieces. Noise keeps its power, and
-    /// a sound that repeats with the period of the loop stays unchanged.
+    /// The gains of the cross-fade are a sine and a cosine. Both are divided by the square root of
+    /// the power that the sum of the two pieces would otherwise have, which depends on the
+    /// correlation of the pieces. Noise keeps its power, and a sound that repeats with the period
+    /// of the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;

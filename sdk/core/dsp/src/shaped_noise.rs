@@ -6,11 +6,11 @@
 //! repeat only after the length of the frame, so no part of a frame is a repetition (numeric
 //! definitions of the specification: random phase).
 //!
-//! A change of the spectrum (a retune) computes the current frame again, with the same phases and
-//! the new spectrum, and cross-fades to the new frame over 10 ms. Parameters that arrive during a
-//! cross-fade wait until the cross-fade ends. Then only the last of them are converted to a
-//! spectrum. In this way a retune computes one frame instead of two. Frames have single precision,
-//! like the output.
+//! When the spectrum changes (a retune), the current frame is computed again with the same phases
+//! and the new spectrum. Over 10 ms, the output cross-fades to the new frame. Parameters that
+//! arrive during a cross-fade wait until the cross-fade ends. Then only the last of them are
+//! converted to a spectrum. In this way a retune computes one frame instead of two. Frames have
+//! single precision, like the output.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -35,7 +35,7 @@ const LOW_RATE_HZ: f64 = 2_400.0;
 ///
 /// The noise has unit RMS, as measured in the bins of the band. These bins do not measure some of
 /// the power at the edges of the band (1/6 of the power of an edge bin). So all components are
-/// amplified to compensate for this.
+/// amplified to compensate for this loss.
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component, because the inverse FFT doubles it.
@@ -284,10 +284,10 @@ impl ShapedNoise {
     /// Cross-fades to another spectrum, which is computed only when it is needed.
     ///
     /// If no change is in progress, the spectrum is computed at once. Otherwise
-    /// [`Self::render_with`] computes it at the end of the change in progress; of several requests,
-    /// only the last counts. `make` receives [`Self::component_hz`] and writes the magnitude at
-    /// each frequency, in any scale. Negative and non-finite values count as zero. Does not
-    /// allocate.
+    /// [`Self::render_with`] computes the spectrum at the end of the change in progress. If several
+    /// changes were requested meanwhile, only the last request counts. `make` receives
+    /// [`Self::component_hz`] and writes the magnitude at each frequency, in any scale. Negative
+    /// and non-finite values count as zero. Does not allocate.
     ///
     /// Returns false if the spectrum was computed at once and all magnitudes are zero. The stream
     /// then continues unchanged.

@@ -8,8 +8,8 @@ use alloc::sync::Arc;
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
-/// A cache of tables by key. Without the feature `std` it shares nothing, and each user has its own
-/// table.
+/// A cache of tables by key. Without the feature `std`, the cache shares nothing, and each user has
+/// its own table.
 #[cfg(feature = "std")]
 pub struct Shared<K, V: ?Sized>(std::sync::Mutex<Tables<K, V>>);
 

@@ -7,8 +7,8 @@
 //! from the counted phase. While nothing changes, an oscillator generates eight samples at a time
 //! from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are
 //! independent, which suits vector instructions. While amplitudes or frequencies change, the
-//! oscillator computes each sample from the sample before it, by rotating a point by the
-//! oscillator's angle per sample.
+//! oscillator computes each sample from the sample before it, by rotating a point in the complex
+//! plane by the oscillator's angle per sample.
 
 use alloc::vec::Vec;
 

@@ -124,7 +124,8 @@ fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     if length > 0.0 { sum / length * folded } else { Complex::new(folded, 0.0) }
 }
 
-/// Magnitude of a complex number. Unlike `Complex::norm`, it has the same bits on every machine.
+/// Magnitude of a complex number. Unlike the result of `Complex::norm`, the result has the same
+/// bits on every machine.
 pub fn magnitude(z: Complex<f64>) -> f64 {
     libm::hypot(z.re, z.im)
 }

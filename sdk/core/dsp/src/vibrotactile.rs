@@ -12,8 +12,9 @@
 //! halving of the contact's area raises it by 3 dB.
 //!
 //! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
-//! The smallest threshold and the values of [`Skin`] are commonly quoted from the papers, to one or
-//! two digits. A laboratory that has measured its participants should use its own [`Listener`].
+//! The smallest threshold and the values of [`Skin`] are rounded values, with one or two digits,
+//! that are commonly quoted from the papers. A laboratory that has measured its participants should
+//! use its own [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
 const FLAT_HZ: f64 = 40.0;

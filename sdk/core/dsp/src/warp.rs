@@ -1,11 +1,10 @@
-//! Plays a stream at a variable rate: reads it faster or slower, at a ratio that may change at any
-//! sample.
+//! Reads a stream of samples faster or slower, at a ratio that may change at any sample.
 //!
 //! A player reads a texture faster or slower when the motion differs from the motion for which the
 //! voice was created. As long as the motion does not differ, the ratio is 1, and samples pass
 //! through this reader unchanged and at no cost ([`Warp::when_needed`]). The reader pulls samples
-//! from its source, so reading ahead causes no delay. It has 8 to 32 taps, as many as it needs to
-//! separate the source's highest frequency from its image.
+//! from its source, so reading ahead causes no delay. The interpolation kernel has 8 to 32 taps, as
+//! many as are needed to separate the source's highest frequency from its image.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -29,8 +28,8 @@ const CHUNK: usize = 64;
 const FEW_PHASE_BITS: u32 = 5;
 
 /// Reads its source at a variable ratio, by windowed-sinc interpolation. Like
-/// [`crate::resample::Resampler`], it pulls samples from the source and gives the same samples for
-/// any block size.
+/// [`crate::resample::Resampler`], the reader pulls samples from the source and gives the same
+/// samples for any block size.
 ///
 /// ```
 /// use htex_dsp::warp::Warp;

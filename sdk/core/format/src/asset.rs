@@ -40,8 +40,8 @@ pub struct Asset {
     /// The contents of `manifest.json`.
     pub manifest: Manifest,
     /// The parameter sets of each representation: one for each condition, in the order of
-    /// [`crate::Representation::at`]. A parameter set is a flat array of the fields in their order;
-    /// the length of a list precedes its values.
+    /// [`crate::Representation::at`]. A parameter set is a flat array with the values of all
+    /// fields, in the order of the fields. The length of a list precedes the values of the list.
     pub parameters: Vec<Vec<Vec<f64>>>,
     /// The recorded spectrum of each condition: magnitudes on the band's 5 Hz grid, in the asset's
     /// unit.

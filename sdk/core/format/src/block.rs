@@ -110,8 +110,8 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
 /// its values.
 ///
 /// # Errors
-/// Returns [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it,
-/// [`WriteError::Layout`] if `flat` does not match `fields`.
+/// Returns [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it.
+/// Returns [`WriteError::Layout`] if `flat` does not match `fields`.
 ///
 /// ```
 /// use htex_format::{StoredField, Steps, StoredAs, round_parameters};

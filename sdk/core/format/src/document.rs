@@ -15,7 +15,7 @@ pub struct Document {
     pub text: &'static str,
     /// Name of the file in messages, such as `manifest.json`.
     pub file: &'static str,
-    /// Name, in messages, of the thing that has the version, such as `asset`.
+    /// Name, in messages, of the thing to which the version belongs, such as `asset`.
     pub thing: &'static str,
     /// The key whose value is the version.
     pub version_key: &'static str,

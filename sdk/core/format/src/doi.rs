@@ -6,7 +6,7 @@ use crate::MetadataError;
 /// Checks the syntax of a DOI. The function does not check whether the DOI is registered.
 ///
 /// # Errors
-/// Returns [`MetadataError::Doi`], which says what to write.
+/// Returns [`MetadataError::Doi`] if the text is not a DOI. The message says what to write instead.
 ///
 /// ```
 /// assert!(htex_format::check_doi("10.5281/zenodo.1234567").is_ok());

@@ -22,8 +22,8 @@ pub struct EntryRange {
     pub data: Range<usize>,
 }
 
-/// Returns the entries of a valid asset in file order. If the bytes are not a valid asset, returns
-/// the entries that it can find.
+/// Returns the entries of a valid asset in file order. If the bytes are not a valid asset, the
+/// function returns those entries that it finds.
 pub fn entry_ranges(bytes: &[u8]) -> Vec<EntryRange> {
     let Some(end) = zip_records::find_end(bytes) else {
         return Vec::new();

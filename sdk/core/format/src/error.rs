@@ -91,7 +91,7 @@ pub enum WriteError {
     },
 }
 
-/// Error: a text of the metadata, such as a licence, does not have the form that it must have.
+/// Error for a text of the metadata, such as a licence, whose form is invalid.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

@@ -1,7 +1,7 @@
 //! Matches an asset's stored fields to a model's fields, by name.
 //!
 //! The player, scenes, `htex info` and `htex validate` all use this module. An asset may store
-//! fields in any order; the model receives them in its own order.
+//! fields in any order. The model receives the fields in the order of its descriptor.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;
@@ -47,7 +47,7 @@ pub enum FieldMismatch {
         /// The model's unit; empty for a pure number.
         wanted: String,
     },
-    /// The asset does not store a field of the model, and the field has no default.
+    /// The asset does not store a field of the model, and the model has no default for this field.
     #[error("the model's field {name:?} is not stored")]
     Missing { name: String },
 }
@@ -189,8 +189,8 @@ impl FieldOrder<'_> {
     }
 }
 
-/// A function that looks up the descriptor of the model that plays a representation. It returns
-/// `None` if the reader does not have that model.
+/// A function that looks up the descriptor of the model that plays a representation. The function
+/// returns `None` if the reader does not have that model.
 pub type KnownModel<'a> = &'a dyn Fn(&Representation) -> Option<&'a Descriptor>;
 
 /// Adds a finding for each stored field that does not match its model's field. Representations of

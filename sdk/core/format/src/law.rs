@@ -2,9 +2,10 @@
 //! not recorded.
 //!
 //! To play a motion (v, F) from the nearest recorded motion (v0, F0), a player multiplies
-//! frequencies by `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. If an exponent was neither
-//! measured nor given by the user, [`Law::assumed`] provides it. The assumption depends on what
-//! slid over the surface ([`Contact`]) and on what the samples measure ([`Quantity`]), e.g. a force.
+//! frequencies by `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. [`Law::assumed`] provides
+//! the exponents that were neither measured nor given by the user. The assumption depends on what
+//! slid over the surface ([`Contact`]) and on what the samples measure ([`Quantity`]), e.g. a
+//! force.
 
 use std::fmt;
 use std::str::FromStr;

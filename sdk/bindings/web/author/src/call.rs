@@ -10,13 +10,13 @@ use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// The result of a call. The caller must free its memory with `htex_free(json, json_len)` and
-/// `htex_free(bytes, bytes_len)`.
+/// The result of a call. The caller must free the memory of the result with `htex_free(json,
+/// json_len)` and `htex_free(bytes, bytes_len)`.
 #[repr(C)]
 #[derive(Debug)]
 #[allow(non_camel_case_types)] // As the names of the C header.
 pub struct htex_author_result {
-    /// A JSON document in UTF-8. If the call fails, it is `{ code, message }`.
+    /// A JSON document in UTF-8. If the call fails, the document is `{ code, message }`.
     pub json: *mut u8,
     /// Length of `json`, bytes.
     pub json_len: usize,

@@ -1,4 +1,4 @@
-//! The documents of calls: JSON objects. Functions take entries out of them by name.
+//! The documents of calls: JSON objects. Functions take entries out of these objects by name.
 //!
 //! Only the tables of settings are read with code that `serde` derives, because derived code adds a
 //! kilobyte or more to the module for each struct.

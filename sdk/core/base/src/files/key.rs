@@ -24,7 +24,8 @@ use crate::files::private;
 pub struct Key([u8; blake3::KEY_LEN]);
 
 impl Key {
-    /// Reads the key with this name in a folder. Creates a random key if there is none.
+    /// Reads the key with this name in a folder. Creates a random key if the folder has no key of
+    /// this name.
     ///
     /// # Errors
     /// Returns an error if the folder or the file belongs to another user, if others can write to

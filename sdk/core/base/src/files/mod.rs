@@ -11,7 +11,8 @@
 //! If the path of a file to write is a symbolic link, the link's target is replaced, with the
 //! permissions of the old target. A device or a pipe is written to directly. A process that
 //! receives a signal to end removes its unfinished files with [`remove_unfinished`]. The next
-//! process that writes to a folder removes the unfinished files of killed processes in it.
+//! process that writes to a folder removes the unfinished files that killed processes left in this
+//! folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;

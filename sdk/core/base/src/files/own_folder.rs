@@ -8,8 +8,8 @@
 //! entry, the program removes the entry itself, never the target of a link. Any other use of a link
 //! inside the folder is an error.
 //!
-//! The checks run before each access. They protect against links that are already in the folder,
-//! but not against a process that changes the folder at the same time.
+//! The program checks for links before each access. The checks protect against links that are
+//! already in the folder, but not against a process that changes the folder at the same time.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
@@ -137,8 +137,9 @@ impl OwnFolder {
         options.write(true).create_new(true).open(path)
     }
 
-    /// Writes a file atomically: writes a new file next to it, flushes that file to disk and
-    /// renames it. Replaces a link of the same name. Creates missing folders above the file.
+    /// Writes a file atomically: writes a temporary file in the same folder, flushes the temporary
+    /// file to disk and renames it. Replaces a link of the same name. Creates missing folders above
+    /// the file.
     ///
     /// # Errors
     /// Returns errors of `write` and of the system, the errors of [`Self::make_folder`], and an
@@ -247,7 +248,7 @@ impl OwnFolder {
         fs::rename(from, self.entry(to)?)
     }
 
-    /// Removes a file or a link, and then the folders above it that have become empty. A missing
+    /// Removes a file or a link, and then those folders above it that have become empty. A missing
     /// file is not an error.
     ///
     /// # Errors
@@ -296,8 +297,8 @@ impl OwnFolder {
         Ok(names)
     }
 
-    /// Removes a folder with everything in it. Links in it are removed and not followed. A missing
-    /// folder is not an error.
+    /// Removes a folder with everything in it. Links in the folder are removed and not followed. A
+    /// missing folder is not an error.
     ///
     /// # Errors
     /// Returns the errors of [`Self::entry_path`], an error if the entry is not a folder or is a

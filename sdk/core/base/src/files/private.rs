@@ -42,7 +42,7 @@ pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Removes all permissions that other users have for a folder of this user.
+/// Removes all permissions of other users from a folder of this user.
 ///
 /// # Errors
 /// Errors of the system.

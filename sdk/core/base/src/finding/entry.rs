@@ -41,8 +41,8 @@ pub struct Finding {
     pub code: String,
     /// Severity.
     pub severity: Severity,
-    /// JSON pointer into the document, e.g. the manifest of an asset. It is empty if the finding
-    /// concerns the whole file.
+    /// JSON pointer into the document, e.g. the manifest of an asset. The pointer is empty if the
+    /// finding concerns the whole file.
     #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
     /// The problem, its place, and what to do about it.

@@ -1,6 +1,6 @@
-//! Results of validation: rules with stable codes, findings, reports and hints. The crate that
-//! reads a kind of file contains the table of its rules. This crate has no rules for particular
-//! files.
+//! Results of validation: rules with stable codes, findings, reports and hints. Each crate that
+//! reads a kind of file contains the table of the rules for this kind. This crate has no rules for
+//! particular files.
 //!
 //! ```
 //! use htex_base::finding::{Findings, Severity};

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// A place in a JSON document. Each place refers to the place that contains it, up to the root.
-/// [`Self::pointer`] formats it as a JSON pointer.
+/// A place in a JSON document. A place refers to the object or array that contains it, and so on up
+/// to the root. [`Self::pointer`] formats the place as a JSON pointer.
 ///
 /// ```
 /// use htex_base::finding::Place;

@@ -1,7 +1,8 @@
 //! Loads native libraries (`.so`, `.dylib`, `.dll`), from a file or by a name that the system's
 //! loader searches for.
 //!
-//! A library is never unloaded, because function pointers, open devices and voices point into it.
+//! A library is never unloaded, because function pointers, open devices and voices point into its
+//! memory.
 //!
 //! Apart from tests, only this crate loads libraries. As in every other argument, a file name
 //! without a folder means a file in the current folder. There are two exceptions, for which the

@@ -1,5 +1,5 @@
-//! Validates documents against JSON Schemas. It downloads nothing: a `$ref` must refer to a part of
-//! the same schema.
+//! Validates documents against JSON Schemas. Nothing is downloaded: a `$ref` must refer to a part
+//! of the same schema.
 
 use std::error::Error;
 

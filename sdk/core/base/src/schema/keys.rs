@@ -12,7 +12,7 @@ pub struct UnknownKey {
     /// The path from the root of the document to the key: keys and indices, and the key itself at
     /// the end.
     pub path: Vec<String>,
-    /// The most similar known key, if one is similar enough.
+    /// The most similar key of the schema, or `None` if no key is similar enough.
     pub nearest: Option<String>,
 }
 

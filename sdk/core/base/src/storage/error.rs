@@ -85,7 +85,8 @@ pub enum StorageProblem {
         /// The progress of the operation, or the last failure.
         what: String,
     },
-    /// Any other refusal, by the server or by a server to which it redirects.
+    /// The request was refused for another reason, by the server or by a server to which it
+    /// redirects.
     #[error("refused: {what}")]
     Refused {
         /// The status and the server's code.

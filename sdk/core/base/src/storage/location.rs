@@ -103,8 +103,8 @@ impl Location {
         }
     }
 
-    /// Returns the last part of the path, with the escapes of a URL resolved. Programs use it as
-    /// the name of a local copy.
+    /// Returns the last part of the path, with the escapes of a URL resolved. Programs use this
+    /// part as the name of a local copy.
     pub fn file_name(&self) -> Option<String> {
         match &self.0 {
             LocalOrRemote::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),

@@ -92,9 +92,9 @@ impl Storage {
         Self { settings, variables, clients: Arc::default(), named: NameSource::ByPerson }
     }
 
-    /// Restricts access to locations that a file such as a recipe may name. `origin` is the
-    /// location of that file if it is remote. The only web servers allowed are public servers and
-    /// the server of `origin`. The only object stores allowed are the stores that the user's
+    /// Restricts access to the locations that a file, such as a recipe, may name. `origin` is the
+    /// location of this file if the file is remote. The only web servers allowed are public servers
+    /// and the server of `origin`. The only object stores allowed are the stores that the user's
     /// environment variables name.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
@@ -193,7 +193,7 @@ impl Storage {
     }
 
     /// Opens one version of a file for reading ranges. The call sends a single request, which
-    /// returns the first `head_bytes` bytes and the size. Reading within these bytes needs no
+    /// returns the first `head_bytes` bytes and the size. Reading these bytes later needs no
     /// further request.
     ///
     /// # Errors

@@ -20,8 +20,8 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-/// An open file, for reading ranges of one version of it. If the file is replaced, reads fail with
-/// [`StorageProblem::Changed`] and never mix two versions.
+/// An open file, from which ranges of one version are read. If the file is replaced, reads fail
+/// with [`StorageProblem::Changed`] and never mix two versions.
 ///
 /// ```
 /// use htex_base::storage::{Location, Storage};
@@ -125,7 +125,7 @@ impl Remote {
     /// the first request already returned these bytes.
     ///
     /// # Errors
-    /// Returns an error if the range ends after the end of the file, the file was replaced, or it
+    /// Returns an error if the range ends after the end of the file, or if the file was replaced or
     /// cannot be read.
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), StorageError> {
         let end = offset.saturating_add(buffer.len() as u64);

@@ -62,8 +62,8 @@ impl Settings {
     }
 }
 
-/// Names and values of environment variables. They contain credentials and endpoints, so their
-/// values are never displayed.
+/// Names and values of environment variables. The values contain credentials and endpoints, so they
+/// are never displayed.
 #[derive(Clone, Default)]
 pub struct Variables(Vec<(String, String)>);
 

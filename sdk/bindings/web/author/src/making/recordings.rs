@@ -1,4 +1,4 @@
-//! Reads recordings that are in memory, as their settings specify.
+//! Reads recordings that are in memory, according to the settings in the call.
 
 use std::path::{Path, PathBuf};
 

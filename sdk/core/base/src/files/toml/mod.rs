@@ -24,7 +24,7 @@ use toml::{Spanned, de};
 pub use nesting::MOST_LEVELS;
 use nesting::check_nesting;
 
-/// An error in a TOML text and its place. It is displayed as `line 3, column 5: …`.
+/// An error in a TOML text and its place. Its text has the form `line 3, column 5: …`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlError {
     /// The line, counted from 1.

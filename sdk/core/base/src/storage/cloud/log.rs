@@ -1,4 +1,4 @@
-//! Counts the requests for a file, and remembers the last one for error messages.
+//! Counts the requests for a file, and remembers the last request for error messages.
 //!
 //! This layer is between the crate `object_store` and the HTTP client. The crate retries requests,
 //! and its errors do not say how the last request ended. Therefore this layer remembers the end of

@@ -1,4 +1,4 @@
-//! Follows the redirects of web servers, and decides to which addresses they may lead.
+//! Follows the redirects of web servers, if they lead to allowed addresses.
 
 use http::{HeaderMap, Method, Response, StatusCode, header};
 use object_store::client::{HttpError, HttpErrorKind, HttpRequest, HttpResponse, HttpService};

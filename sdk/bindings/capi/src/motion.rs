@@ -1,4 +1,4 @@
-//! Motions as C passes them.
+//! The C struct for a motion, and its conversion.
 
 use std::mem::offset_of;
 

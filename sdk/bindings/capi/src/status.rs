@@ -33,7 +33,7 @@ pub enum htex_status {
     HTEX_STATUS_INVALID_SCENE = 10,
     /// This build of the library lacks the feature.
     HTEX_STATUS_UNSUPPORTED = 11,
-    /// The buffer is too small for the text. It contains the beginning of the text.
+    /// The buffer is too small for the text. The buffer contains the beginning of the text.
     HTEX_STATUS_TRUNCATED = 12,
     /// An error in the library itself. Free the object that was passed to the call.
     HTEX_STATUS_INTERNAL = 13,

@@ -144,8 +144,8 @@ pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_stat
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice is silent,
-/// otherwise 0. The samples of a silent voice are 0 until the finger slides again. Rendering them
-/// takes hardly any time.
+/// otherwise 0. The samples of a silent voice are 0 until the finger slides again. Rendering a
+/// silent voice takes hardly any time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
     guarded(|| {

@@ -1,4 +1,4 @@
-//! Searches for models, and describes them.
+//! Searches for models, and describes the models found.
 
 use std::path::PathBuf;
 

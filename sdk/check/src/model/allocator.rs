@@ -12,9 +12,9 @@
 //! and maps pages itself, or calls to an address that `dlsym` returned. It also does not detect
 //! calls in libraries that are loaded after `watch`, or in threads that a library starts.
 //!
-//! Other methods were rejected. Comparing the heap before and after does not show memory that was
-//! allocated and freed in between. If the program defined its own `malloc`, all other commands of
-//! the program would use it. A preloaded library would be a second file to install. For a WASM
+//! Other methods have disadvantages. Comparing the heap before and after does not show memory that
+//! was allocated and freed in between. If the program defined its own `malloc`, all other commands
+//! of the program would use it. A preloaded library would be a second file to install. For a WASM
 //! module, only the growth of its memory is visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 

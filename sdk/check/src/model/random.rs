@@ -1,4 +1,5 @@
-//! Random numbers for random parameters and for the fuzzer. They are the same on every machine.
+//! Random numbers for random parameters and for the fuzzer. The numbers are the same on every
+//! machine.
 
 /// A 64-bit generator (splitmix64).
 #[derive(Debug, Clone)]

@@ -1,4 +1,5 @@
-//! Code that the crates of htex share. It contains nothing about textures or devices.
+//! Code that the crates of htex share. This crate contains nothing that is specific to textures or
+//! devices.
 //!
 //! - [`finding`]: results of validation, with rules, reports and hints.
 //! - [`files`]: files that are written completely or not at all, and safe access to files and

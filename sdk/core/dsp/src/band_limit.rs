@@ -27,11 +27,11 @@ const EDGE_POINTS: usize = 4;
 /// dB.
 const BESIDE: f64 = 0.5;
 
-/// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. They are Chebyshev
-/// filters. Inside the band, at a distance of an eighth of the edge's frequency or more from each
-/// edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, the magnitude
-/// is 3 dB down. An edge at or above the Nyquist frequency gets no filter. The output is delayed by
-/// some samples ([`Pipeline`]).
+/// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. The filters are
+/// Chebyshev filters. Inside the band, at a distance of an eighth of the edge's frequency or more
+/// from each edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, the
+/// magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no filter. The output is
+/// delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -62,9 +62,9 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
 /// outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only its
 /// part below that frequency counts.
 ///
-/// The table corrects the level of filtered noise. Without the correction, the noise would be too
-/// weak for three reasons: the filters' ripple, the part of the highest bin above the Nyquist
-/// frequency, and the power that the window does not measure at the band's edges.
+/// The table corrects the level of filtered noise. Without this correction, the noise would be too
+/// weak for three reasons. The filters have ripple, a part of the highest bin lies above the
+/// Nyquist frequency, and the window does not measure all power at the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
     /// Frequency in hertz, and the part of the power at this frequency that is measured, 0 to

@@ -2,8 +2,8 @@
 //!
 //! The level is the exact RMS of the samples of a block, and has no delay. Mean frequency and bands
 //! are computed from periodic Hann windows of `N` samples, where `N` is the smallest power of two
-//! that lasts at least 40 ms (at 20 kHz: 1024 samples, 51.2 ms; at 48 kHz: 2048, 42.7 ms). One
-//! window ends every `N / 4` samples. Before the first sample, the stream counts as 0.
+//! that lasts at least 40 ms. At 20 kHz, `N` is 1024 (51.2 ms), and at 48 kHz, `N` is 2048 (42.7
+//! ms). One window ends every `N / 4` samples. Before the first sample, the stream counts as 0.
 //!
 //! Let `X[k]` be the transform of the windowed samples, and `W` the sum of the squared window. Bin
 //! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`; all bins but the first and the last
@@ -31,8 +31,8 @@ const OVERLAP: usize = 4;
 pub struct Measurement {
     /// RMS of the samples; 0 if there are none.
     pub level_rms: f64,
-    /// Mean frequency, hertz: the mean of the frequencies, weighted by their power. It is 0 for
-    /// silence.
+    /// Mean frequency, hertz: the mean of the frequencies, weighted by their power. The mean
+    /// frequency is 0 for silence.
     pub centroid_hz: f64,
     /// Number of samples.
     pub frames: u64,

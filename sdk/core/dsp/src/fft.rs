@@ -14,7 +14,7 @@ use complex::{ComplexFft, Points};
 
 mod complex;
 
-/// FFT of real signals of one length. It contains its tables and working memory.
+/// FFT of real signals of one length. The value contains its tables and working memory.
 ///
 /// ```
 /// use htex_dsp::fft::RealFft;

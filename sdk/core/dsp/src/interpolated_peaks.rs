@@ -2,13 +2,12 @@
 //! neighbour, this module computes the frequency and amplitude of a sinusoid. A periodic Hann
 //! window would measure exactly these two bins from this sinusoid.
 //!
-//! If the sinusoid is `d` bins from the maximum, the neighbour on the sinusoid's side is `(1 + d) /
-//! (2 - d)` times as high as the maximum. Magnitudes averaged over segments keep this ratio. The
-//! table compares this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2
-//! C + R)`, and with a parabola through three logarithms. Each cell has four errors: the RMS error
-//! and the largest error of the frequency, then the RMS error and the largest error of the
-//! amplitude. Each spectrum is the mean power of 10 segments, and the sinusoids lie between 60 Hz
-//! and 900 Hz:
+//! If the sinusoid is `d` bins from the maximum, the larger neighbour is `(1 + d) / (2 - d)` times
+//! as high as the maximum. Magnitudes averaged over segments keep this ratio. The table compares
+//! this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2 C + R)`, and
+//! with a parabola through three logarithms. Each cell has four errors: the RMS error and the
+//! largest error of the frequency, then the RMS error and the largest error of the amplitude. Each
+//! spectrum is the mean power of 10 segments, and the sinusoids lie between 60 Hz and 900 Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|
@@ -28,8 +27,9 @@ use crate::window::hann_main_lobe;
 /// the same as [`select_peaks`](crate::peaks::select_peaks), but interpolates frequencies and
 /// magnitudes between the bins.
 ///
-/// The first and the last bin also count as maxima if they are above their only neighbour; their
-/// peaks lie at the edge of the band or inside the band. A spectrum of one value has no peak.
+/// The first and the last bin also count as maxima if they are above their only neighbour. The peak
+/// of such a bin lies at the edge of the band or inside the band. A spectrum of one value has no
+/// peak.
 ///
 /// `frequency_hz` is the 5 Hz grid of a band, in hertz. If `frequency_hz` and `magnitude` differ in
 /// length, the excess values of the longer slice are ignored.

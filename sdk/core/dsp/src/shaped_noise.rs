@@ -221,8 +221,8 @@ impl Frames {
 }
 
 impl ShapedNoise {
-    /// Makes a stream with this seed at `rate_hz`, which is clamped to 20 Hz to 10 MHz. It is
-    /// silent until [`Self::start`] is called.
+    /// Makes a stream with this seed at `rate_hz`, which is clamped to 20 Hz to 10 MHz. The stream
+    /// is silent until [`Self::start`] is called.
     pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
         let frames = Frames::shared(rate_hz.clamp(20.0, 1e7), band);
         let components = frames.component_hz.len();

@@ -86,7 +86,7 @@ impl FieldMismatch {
 }
 
 /// The mapping from an asset's stored fields to the fields of a model, in the model's order.
-/// [`match_fields`] returns it.
+/// [`match_fields`] returns this mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [StoredField],

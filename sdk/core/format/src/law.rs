@@ -149,10 +149,10 @@ impl Exponent {
     /// Creates an exponent from a measurement, its standard error and the assumed exponent.
     ///
     /// The result is the weighted mean of the measurement and the assumed exponent, limited to
-    /// `bounds`. The weight of the measurement is the inverse square of its standard error; the
-    /// weight of the assumed exponent is the inverse square of `spread`, the standard deviation
-    /// between surfaces. If the measurement has less than a tenth of the total weight, the result
-    /// is the assumed exponent.
+    /// `bounds`. The weight of the measurement is the inverse square of its standard error. The
+    /// weight of the assumed exponent is the inverse square of `spread`, which is the standard
+    /// deviation between surfaces. If the measurement has less than a tenth of the total weight,
+    /// the result is the assumed exponent.
     ///
     /// ```
     /// use htex_format::{Exponent, ExponentSource};
@@ -209,9 +209,9 @@ impl Law {
     ///   J. J. Lopez Delgado, K. J. Kuchenbecker 2014).
     /// - Bare finger: vibrations scale in time with the speed (C. M. Greenspon, K. R. McLellan, J.
     ///   D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre, J.-L. Thonnard 2012).
-    ///   So the level of a velocity is proportional to the speed, the level of an acceleration is
-    ///   proportional to the square of the speed, and the level of other quantities does not change
-    ///   with the speed. All levels are proportional to the normal force.
+    ///   So the level of a velocity is proportional to the speed, and the level of an acceleration
+    ///   to the square of the speed. The level of other quantities does not change with the speed.
+    ///   All levels are proportional to the normal force.
     /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
     ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///

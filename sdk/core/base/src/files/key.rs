@@ -28,8 +28,8 @@ impl Key {
     /// this name.
     ///
     /// # Errors
-    /// Returns an error if the folder or the file belongs to another user, if others can write to
-    /// the folder or access the file, or if the system reports an error.
+    /// Returns an error if the folder or the file belongs to another user, or if others can write
+    /// to the folder or access the file. Also returns errors of the system.
     pub fn load_or_create(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);

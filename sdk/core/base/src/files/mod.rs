@@ -5,8 +5,8 @@
 //! - A program that writes to an untrusted folder does not follow links in this folder
 //!   ([`OwnFolder`]).
 //! - Data that a program stores in such a folder is authenticated (`Key`).
-//! - Files are written atomically: a file is first written next to its target and then renamed to
-//!   it, so that readers see either the old file or the complete new file.
+//! - Files are written atomically: a file is first written under a temporary name and then renamed
+//!   to its target. So readers see either the old file or the complete new file.
 //!
 //! If the path of a file to write is a symbolic link, the link's target is replaced, with the
 //! permissions of the old target. A device or a pipe is written to directly. A process that

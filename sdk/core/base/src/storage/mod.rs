@@ -60,7 +60,8 @@ use location::LocalOrRemote;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stat {
     pub bytes: u64,
-    /// The file's entity tag, if the store has one. It changes when the content changes.
+    /// The file's entity tag, if the store has one. The entity tag changes when the content
+    /// changes.
     pub etag: Option<String>,
     /// Time when the file's content last changed, if the store states it.
     pub modified: Option<SystemTime>,

@@ -1,4 +1,4 @@
-//! The facts about an asset that the index states. They come from the asset's manifest.
+//! The facts about an asset that the index states. These facts come from the asset's manifest.
 
 use crate::{Contact, Law, Manifest};
 

@@ -21,7 +21,7 @@ pub struct Limits {
     pub leaf_bytes: u64,
     /// Size of a texture, bytes: 16 MiB, the limit of a `.htex` file.
     pub asset_bytes: u64,
-    /// Number of different shared objects: 1,048,576. Only validation counts them.
+    /// Number of different shared objects: 1,048,576. Only validation counts the shared objects.
     pub objects: u64,
     /// Ratio of the size of all textures to the size of the file: 1,000. This limit applies to
     /// programs that read all textures, e.g. to validate or to unpack them

@@ -13,7 +13,7 @@ use crate::storage::{StorageError, StorageProblem};
 
 /// The reason why an operation failed.
 pub(super) enum Fail {
-    /// A request failed before its body.
+    /// A request failed before the response's body began.
     Request(Box<object_store::Error>),
     /// A response body was cut off and could not be resumed.
     Body,

@@ -33,10 +33,9 @@ unsafe impl Sync for Log {}
 
 static LOG: RwLock<Option<Log>> = RwLock::new(None);
 
-/// [any thread] Sets the function that receives messages. If it is NULL, which is the default,
-/// messages are discarded. The library calls the function in the thread of the call that causes the
-/// message. Calls that render or set a motion never cause messages. The function must not call the
-/// library.
+/// [any thread] Sets the function that receives messages. NULL, the default, discards all messages.
+/// The library calls the function in the thread of the call that causes the message. Calls that
+/// render or set a motion never cause messages. The function must not call the library.
 ///
 /// After htex_set_log returns, the library does not call the previous function any more.
 #[unsafe(no_mangle)]

@@ -47,9 +47,11 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
 /// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency.
 ///
 /// The function considers the maxima in order of strength; of two equally strong maxima, the lower
-/// frequency comes first. The function selects a peak at the frequency f if `|f - g| / min(f, g) >=
-/// jnd` for the frequency g of every peak selected before. It ends when it has selected `max_count`
-/// peaks. `frequency_hz` is ascending, in hertz. If `frequency_hz` and `magnitude` differ in
+/// frequency comes first. The function selects a peak at the frequency f if
+/// `|f - g| / min(f, g) >= jnd` for the frequency g of every peak selected before. The function
+/// ends when it has selected `max_count` peaks.
+///
+/// `frequency_hz` is ascending, in hertz. If `frequency_hz` and `magnitude` differ in
 /// length, the excess values of the longer slice are ignored. A spectrum without local maxima gives
 /// an empty list.
 pub fn select_peaks(

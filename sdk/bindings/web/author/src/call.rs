@@ -10,8 +10,8 @@ use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// The result of a call. The caller must free the memory of the result with `htex_free(json,
-/// json_len)` and `htex_free(bytes, bytes_len)`.
+/// The result of a call. The caller must free the memory of the result with
+/// `htex_free(json, json_len)` and `htex_free(bytes, bytes_len)`.
 #[repr(C)]
 #[derive(Debug)]
 #[allow(non_camel_case_types)] // As the names of the C header.

@@ -1,6 +1,7 @@
-//! The model {{LABEL}} ({{ID}}), which has a single resonance until you change it. It plays noise
-//! with the spectrum of a two-pole band-pass filter, `1 / sqrt(1 + ((f/centre - centre/f)
-//! centre/bandwidth)²)`.
+//! The model {{LABEL}} ({{ID}}), which has a single resonance until you change it.
+//!
+//! The model plays noise with the spectrum of a two-pole band-pass filter:
+//! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`.
 //!
 //! `cargo build --release` builds the native library. With `--target wasm32-unknown-unknown` it
 //! builds the WASM module. The module does not link the standard library, so it is small enough to

@@ -125,10 +125,10 @@ pub unsafe extern "C" fn htex_scene_set_finger(
     unsafe { calls::set_finger(scene, finger) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames` samples
-/// and writes their number to `rendered`. Fewer than `frames` samples are rendered at the end of
-/// the scene. If a model fails, its surface becomes silent, the other surfaces play on, and the
-/// call returns the error.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next `frames`
+/// samples. `rendered` receives the number of samples that were rendered. Fewer than `frames`
+/// samples are rendered at the end of the scene. If a model fails, its surface becomes silent, the
+/// other surfaces play on, and the call returns the error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_render(
     scene: htex_scene,

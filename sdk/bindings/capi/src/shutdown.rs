@@ -9,8 +9,8 @@ use crate::voice::VOICES;
 /// The call brings all devices to rest and frees them, and then frees all scenes, voices, assets
 /// and libraries, in this order. It also ends the threads of the WASM engines and removes the
 /// function that was set with htex_set_log. Existing handles become invalid, but new objects may be
-/// made afterwards. Constants of the models that were used stay in memory: 0.2 MB for all six
-/// built-in models, however often they are used. If an object is in use, the call returns
+/// made afterwards. The constants of the models that the program used stay in memory. For all six
+/// built-in models together, these constants take 0.2 MB. If an object is in use, the call returns
 /// HTEX_STATUS_BUSY. Objects of the same kind, and of the kinds that come later in this order, are
 /// then not freed.
 #[unsafe(no_mangle)]

@@ -206,10 +206,11 @@ pub unsafe extern "C" fn htex_voice_render_add(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Writes the level and mean
-/// frequency of what the voice played since the last call. They are measured after effects, gain
-/// and limit. Use this call for phones, game controllers and motors that receive a level and a
-/// frequency instead of samples. `bands` receives the mean square of the samples in each of the
-/// voice's `envelope_bands`, in the asset's unit squared. `bands` may be NULL if `bands_len` is 0.
+/// frequency of what the voice played since the last call. Both are measured after the voice's
+/// effects, gain and limit. Use this call for phones, game controllers and motors that receive a
+/// level and a frequency instead of samples. `bands` receives the mean square of the samples in
+/// each of the voice's `envelope_bands`, in the asset's unit squared. `bands` may be NULL if
+/// `bands_len` is 0.
 ///
 /// The level is exact. The mean frequency and the bands are computed from Hann windows of N
 /// samples, where N is the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A new

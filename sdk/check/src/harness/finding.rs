@@ -55,7 +55,7 @@ pub struct Finding {
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// The result of a check. Both variants are findings, so that `?` ends a check.
+/// The result of a check. `Ok` and `Err` both contain a finding, so a check can end early with `?`.
 pub type CheckResult = Result<Finding, Finding>;
 
 impl Finding {

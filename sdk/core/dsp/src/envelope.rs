@@ -89,7 +89,7 @@ pub struct Analyser {
 
 impl Analyser {
     /// Makes an analyser with `count` bands (at least one). The bands divide `band` so that the
-    /// ratio of upper to lower edge is the same for all.
+    /// ratio of upper to lower edge is the same for all bands.
     pub fn new(count: usize, band: Band, rate_hz: f64) -> Self {
         let count = count.max(1);
         let len = libm::ceil(WINDOW_S * rate_hz) as usize;

@@ -1,4 +1,4 @@
-//! A gain that changes linearly, so that changes make no clicks.
+//! A gain that changes linearly over some samples, so that a change is not audible as a click.
 
 /// A gain that moves to each new target along a straight line of fixed duration.
 ///
@@ -54,7 +54,8 @@ impl Glide {
         self.set_within(target, self.len);
     }
 
-    /// Starts a change to `target`, as [`Self::set`] does, that takes `len` samples (at least one).
+    /// Starts a change to `target` that takes `len` samples (at least one). Otherwise works as
+    /// [`Self::set`].
     pub fn set_within(&mut self, target: f32, len: u32) {
         // A host may set the same target with every block. If each call restarted the ramp, it
         // would never end.

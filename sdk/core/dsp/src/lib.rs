@@ -7,7 +7,7 @@
 //! libraries and in WASM modules.
 //!
 //! Frequencies and sample rates are in hertz, angles in radians, magnitudes in the unit of the
-//! signal, unless a name says otherwise.
+//! signal, unless a name states another unit.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![deny(unsafe_code)] // Exception: two calls in `wide`.
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -104,9 +104,9 @@ impl Stages {
 
 /// Solves the Yule–Walker equations for autocorrelation lags `0..=order` (Levinson–Durbin).
 ///
-/// Missing lags count as zero. Every autocorrelation gives a stable model. All coefficients are
-/// zero if the signal has no power. If a lag is not finite, the reflection coefficients of its
-/// stage and of all later stages are zero.
+/// Missing lags count as zero. The resulting model is stable for every autocorrelation. All
+/// coefficients are zero if the signal has no power. If a lag is not finite, the reflection
+/// coefficients of its stage and of all later stages are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::levinson_durbin;

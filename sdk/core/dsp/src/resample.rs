@@ -97,8 +97,9 @@ impl Resampler {
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Returns the work of a converter for these rates, or `None` if no conversion is needed.
-    /// `own_rate` says whether [`Self::of_own_rate`] makes the converter.
+    /// Returns the computing work of a converter for these rates, or `None` if no conversion is
+    /// needed. If `own_rate` is true, this is the work of a converter made with
+    /// [`Self::of_own_rate`], otherwise with [`Self::new`].
     ///
     /// # Errors
     /// The errors of [`Self::new`].

@@ -1,5 +1,5 @@
-//! A cache of tables that depend only on a few parameters. All users of a table share it. The cache
-//! also keeps the last few tables when they are not in use.
+//! A cache of tables that depend only on a few parameters. All users with the same parameters share
+//! one table. The cache also keeps the last few tables when they are not in use.
 
 use alloc::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
-//! Each step converts a few source samples to all their outputs. The outputs of one phase are side
-//! by side in a vector register. So no sum runs across the lanes of a register, and the output does
-//! not depend on the block sizes.
+//! Each step converts a few source samples to all output samples that belong to them. The outputs
+//! of one phase are side by side in a vector register. So no sum runs across the lanes of a
+//! register, and the output does not depend on the block sizes.
 //!
 //! Source samples are pulled in multiples of eight. Therefore a voice retunes at the same source
 //! sample, whichever conversion stages follow it.

@@ -2,9 +2,10 @@
 //!
 //! A player reads a texture faster or slower when the motion differs from the motion for which the
 //! voice was created. As long as the motion does not differ, the ratio is 1, and samples pass
-//! through this reader unchanged and at no cost ([`Warp::when_needed`]). The reader pulls samples
-//! from its source, so reading ahead causes no delay. The interpolation kernel has 8 to 32 taps, as
-//! many as are needed to separate the source's highest frequency from its image.
+//! through this reader unchanged and at no cost ([`Warp::when_needed`]). The interpolation also
+//! needs samples after the current position. This causes no delay, because the reader pulls these
+//! samples from its source in advance. The interpolation kernel has 8 to 32 taps, as many as are
+//! needed to separate the source's highest frequency from its image.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

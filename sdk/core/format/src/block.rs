@@ -1,9 +1,9 @@
 //! Encoder and decoder of parameter blocks.
 //!
-//! For each condition, a block contains the stored values of each field, in little-endian order
-//! and, except for packed lists, with a fixed width. The length of a list precedes its values, as a
-//! variable-length integer of bincode. Only the manifest's fields determine the layout. This is the
-//! only module that uses bincode.
+//! For each condition, a block contains the stored values of each field. Values are in
+//! little-endian order and have a fixed width, except in packed lists. The length of a list is a
+//! variable-length integer of bincode, which precedes the values of the list. The layout depends
+//! only on the fields in the manifest. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};

@@ -10,7 +10,7 @@ use serde_json::{Map, Number, Value};
 use htex_base::finding::Place;
 
 /// Parses a JSON text and refuses duplicate keys, because some programs use the first value of such
-/// a key and others the last. The parser itself limits the nesting depth to 128.
+/// a key, and other programs use the last value. The parser itself limits the nesting depth to 128.
 ///
 /// # Errors
 /// Returns an error if the text is not JSON, nests too deep, or has a key twice in an object.

@@ -64,7 +64,8 @@ pub struct Interval {
 pub(crate) struct TexturePlace {
     /// Range of the texture's own bytes, counted from the start of the payload.
     pub own: Range<u64>,
-    /// Shared objects that a reader inserts into the texture's own bytes, in order.
+    /// Objects that the texture shares with other textures, in the order in which a reader inserts
+    /// them into the texture's own bytes.
     pub cuts: Vec<Cut>,
 }
 

@@ -72,7 +72,7 @@ pub struct Manifest {
     pub contact: Contact,
     /// Physical quantity of the samples, e.g. the lateral force.
     pub quantity: Quantity,
-    /// Unit of the samples. It must be the unit of `quantity`.
+    /// Unit of the samples: the unit that belongs to `quantity`.
     pub unit: String,
     /// Frequency band of the spectra.
     #[serde(with = "BandText")]
@@ -211,7 +211,8 @@ pub struct Source {
     pub blake3: Option<String>,
 }
 
-/// A condition: the speed and normal force of a recording. An absent value is unknown.
+/// A condition: the speed and normal force of a recording. A speed or force that is absent is
+/// unknown.
 ///
 /// ```
 /// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
@@ -228,19 +229,19 @@ pub struct Condition {
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
     /// Repeatability, decibels: an estimate of how much a second recording of the same surface
-    /// would differ. It compares the odd and the even blocks of the recording: the RMS of their
-    /// level differences in nine bands, divided by √2.
+    /// would differ. The estimate is the RMS, over nine bands, of the level differences between the
+    /// odd and the even blocks of the recording, divided by √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of recorded segments that were averaged at this condition. It is 0 if the condition
-    /// was interpolated between recorded conditions.
+    /// Number of recorded segments that were averaged at this condition, or 0 if the condition was
+    /// interpolated between recorded conditions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }
 
 /// Largest relative difference at which two speeds, or two forces, count as the same. A person who
-/// is asked to keep a speed or a force constant is about as accurate as this.
+/// tries to keep a speed or a force constant deviates by about as much.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
@@ -350,9 +351,9 @@ fn is_zero(x: &f64) -> bool {
 impl Representation {
     /// Returns the error in decibels by which a program chooses among an asset's representations.
     ///
-    /// This is the error at the first condition, where a voice starts. If that condition has no
-    /// measured error, for example because it was interpolated between recorded conditions, this is
-    /// [`Self::largest_error_db`]. Returns `None` if no condition has a measured error.
+    /// This is the error at the first condition, where a voice starts. The first condition has no
+    /// measured error if, for example, it was interpolated between recorded conditions. The result
+    /// is then [`Self::largest_error_db`]. Returns `None` if no condition has a measured error.
     ///
     /// ```no_run
     /// # use htex_format::ErrorMeasure;
@@ -367,8 +368,8 @@ impl Representation {
         first.or_else(|| self.largest_error_db(measure))
     }
 
-    /// Returns the largest error of all conditions by this measure, decibels. Returns `None` if no
-    /// condition has a measured error.
+    /// Returns the largest error, in decibels, among the errors at all conditions. Returns `None`
+    /// if no condition has a measured error.
     pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
         let measured = self.at.iter().filter_map(|at| at.error_db(measure));
         measured.max_by(f64::total_cmp)
@@ -402,8 +403,8 @@ pub struct AtCondition {
     /// How well the model agrees with the recorded spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Left-out error: the error on recorded blocks near this condition, of a fit that did not use
-    /// these blocks.
+    /// Left-out error. Recorded blocks near this condition are left out of a fit; the error
+    /// compares the fitted model with these blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }
@@ -411,8 +412,8 @@ pub struct AtCondition {
 /// The archive entry with the recorded spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
-    /// Name of the archive entry. For each condition it contains the magnitudes on the band's 5 Hz
-    /// grid, as 32-bit floats, in the asset's unit.
+    /// Name of the archive entry. The entry contains the recorded magnitudes for each condition, on
+    /// the band's 5 Hz grid, as 32-bit floats, in the asset's unit.
     #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub file: String,
 }

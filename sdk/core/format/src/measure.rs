@@ -2,8 +2,8 @@
 //! measure.
 //!
 //! From these rows the project generates the keys of `quality` (with their checks, schema and
-//! rounding), the columns of tables and reports, and the tables in the documents. `htex-author` has
-//! the function that computes each measure.
+//! rounding), the columns of tables and reports, and the tables in the documents. The crate
+//! `htex-author` contains the functions that compute the measures.
 
 use std::fmt;
 
@@ -37,7 +37,7 @@ impl MeasureKind {
 /// What a measure is computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's magnitudes, as a measurement of its voice's output would show them.
+    /// The model's magnitudes, as one would measure them in the output of the model's voice.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,
@@ -54,8 +54,8 @@ pub struct MeasureRow {
     pub meaning: &'static str,
     /// Definition for rendered samples; `None` if the measure is not computed from them.
     pub of_samples: Option<&'static str>,
-    /// Says when a comparison lacks this measure, in words that follow "`None` " in a text. `None`
-    /// if every comparison has the measure.
+    /// The case in which a comparison has no value for this measure, such as "for a silent
+    /// reference". Texts put "`None` " before these words. `None` if every comparison has a value.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,
@@ -69,7 +69,8 @@ pub struct MeasureRow {
     pub judged: MeasureKind,
     /// Whether assets store the measure in `quality`.
     pub stored: bool,
-    /// Whether `quality`, and `left_out` if it stores the measure, must contain it.
+    /// Whether `quality` must contain the measure. If so, and if [`Self::left_out`] is set,
+    /// `left_out` must also contain the measure.
     pub required: bool,
     /// Whether assets also store the measure in `left_out`.
     pub left_out: bool,
@@ -77,7 +78,8 @@ pub struct MeasureRow {
     pub column: Option<&'static str>,
     /// Heading of the measure's column in printed tables, if it is computed from rendered samples.
     pub played: Option<&'static str>,
-    /// Caption of the measure's table in reports. `{}` stands for the name of what was measured.
+    /// Caption of the measure's table in reports. The caption contains `{}` in the place of the
+    /// name of the measured object.
     pub caption: Option<&'static str>,
 }
 

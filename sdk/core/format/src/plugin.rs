@@ -39,8 +39,8 @@ impl Plugin {
         self
     }
 
-    /// Returns whether the signature is valid for its public key and this plugin. Returns true if
-    /// the entry has no signature.
+    /// Returns whether the entry's signature is valid for this plugin and for the public key in the
+    /// signature. Returns true if the entry has no signature.
     pub fn is_signature_valid(&self) -> bool {
         let Some(signature) = &self.signature else {
             return true;

@@ -1,5 +1,5 @@
-//! How well a representation agrees with the recorded spectrum: `quality` and `left_out`. Their
-//! JSON is in [`crate::quality_json`].
+//! How well a representation agrees with the recorded spectrum: `quality` and `left_out`. The
+//! module [`crate::quality_json`] contains their JSON.
 
 use std::collections::BTreeMap;
 
@@ -125,13 +125,13 @@ impl Quality {
     }
 }
 
-/// Left-out error near a condition. It compares recorded blocks with the output of a player whose
-/// fit did not use these blocks. It has the measures whose [`crate::MeasureRow::left_out`] is set.
+/// Left-out error near a condition: the error of a fit on recorded blocks that the fit did not use.
+/// This type contains the measures whose [`crate::MeasureRow::left_out`] is set.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 
 impl LeftOut {
-    /// Returns the measures that a left-out error has.
+    /// Returns the measures of which a left-out error consists.
     pub fn measures() -> impl Iterator<Item = Measure> + Clone {
         Measure::ALL.into_iter().filter(|m| m.row().left_out)
     }

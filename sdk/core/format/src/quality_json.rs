@@ -1,5 +1,5 @@
-//! JSON of `quality` and `left_out`. The table of measures defines the keys. This module reads,
-//! writes, checks and describes both objects with these keys.
+//! JSON of `quality` and `left_out`. The table of measures defines the keys of both JSON objects.
+//! This module reads, writes and checks these objects, and describes them in the JSON Schema.
 
 use std::borrow::Cow;
 use std::fmt;

@@ -144,9 +144,9 @@ impl Quantity {
     }
 
     /// Returns the largest allowed level (RMS) of an asset, in the quantity's unit. The limit keeps
-    /// samples within the range of 32-bit floats in any scene. For velocity and displacement, the
-    /// limit is the level of a 20 Hz vibration with the largest allowed acceleration (8.0e3 m/s and
-    /// 63 m), rounded up to a power of ten.
+    /// samples within the range of 32-bit floats in any scene. The limits of velocity and
+    /// displacement follow from the largest allowed acceleration: a 20 Hz vibration with this
+    /// acceleration has 8.0e3 m/s and 63 m, and the limits are the next powers of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,

@@ -1,4 +1,4 @@
-//! Licence and author of a texture as text, for files that are made from the texture.
+//! Licence and author of a texture, as text that programs add to files made from the texture.
 //!
 //! The text has two lines in the form of REUSE (<https://reuse.software>). Programs can find these
 //! lines in any comment or description. Every export of an asset uses this module, so that all
@@ -103,8 +103,8 @@ impl Rights {
         }
     }
 
-    /// Returns the lines of [`Self::to_text`] as comments of a programming language. Each line
-    /// starts with `before`.
+    /// Returns the lines of [`Self::to_text`] as comments of a programming language. `before` is
+    /// written at the start of each line, e.g. `// `.
     #[must_use]
     pub fn commented(&self, before: &str) -> String {
         let text = self.to_text();
@@ -117,7 +117,7 @@ impl Rights {
         Self::new(after(LICENSE, text), after(AUTHOR, text))
     }
 
-    /// Returns these rights. If the licence or the author is missing, it comes from `other`.
+    /// Returns these rights, with a missing licence or a missing author replaced from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { license: self.license.or(other.license), author: self.author.or(other.author) }
@@ -137,8 +137,8 @@ impl Rights {
         if self.is_empty() { Vec::new() } else { chunk(b"LIST", &list) }
     }
 
-    /// Appends the chunk of [`Self::riff`] to a WAV file. The samples do not change. If the file
-    /// would grow beyond 4 GiB, it does not change at all.
+    /// Appends the chunk of [`Self::riff`] to a WAV file. The samples do not change. Leaves the
+    /// file unchanged if the chunk would make it larger than 4 GiB.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -160,9 +160,9 @@ impl Rights {
         wav.seek(SeekFrom::End(0)).map(drop)
     }
 
-    /// Adds the rights to a finished file. It appends a chunk to a WAV file; for any other file, it
-    /// writes a [`license_file`] next to it. It replaces a file only when the new file is complete.
-    /// For a device or a pipe, it does nothing.
+    /// Adds the rights to a finished file: appends a chunk to a WAV file, and writes a
+    /// [`license_file`] next to any other file. An existing file is replaced only when the new file
+    /// is complete. Does nothing if `path` is a device or a pipe.
     ///
     /// # Errors
     /// If a file cannot be read or written.
@@ -183,8 +183,8 @@ impl Rights {
         })
     }
 
-    /// Returns the path of the file that [`Self::add_to_file`] writes next to `path`, or `None` if
-    /// it writes no such file.
+    /// Returns the path of the licence file that [`Self::add_to_file`] writes next to `path`.
+    /// Returns `None` if there are no rights to write, or if `path` is a WAV file.
     #[must_use]
     pub fn beside(&self, path: &Path) -> Option<PathBuf> {
         (!self.is_empty() && !is_wav(path)).then(|| license_file(path))
@@ -200,7 +200,7 @@ pub fn license_file(path: &Path) -> PathBuf {
     name.into()
 }
 
-/// Reads the licence file next to `path`. Returns `None` if there is none.
+/// Reads the licence file next to `path`. Returns `None` if there is no such file.
 ///
 /// # Errors
 /// If the licence file cannot be read, is not a regular file or is too long.

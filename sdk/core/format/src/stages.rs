@@ -1,5 +1,5 @@
-//! The stages of reading an asset. They determine the order of the findings, and where reading
-//! stops after an error.
+//! The stages of reading an asset. The stages determine in which order findings are reported, and
+//! where reading stops after an error.
 
 pub(crate) use htex_base::finding::COUNT;
 use htex_base::finding::{Rule, Stage};

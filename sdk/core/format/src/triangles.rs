@@ -12,9 +12,11 @@
 //! - The edges that only one triangle has form one outline.
 //! - The outline turns left at each corner and goes around once.
 //!
-//! These tests are sufficient because the number of triangles that cover a point equals the number
-//! of times that the outline goes around the point: the edges between two triangles cancel. So one
-//! triangle covers each point inside the outline, and no triangle covers a point outside.
+//! These tests are sufficient for the following reason. The edges between two triangles cancel, so
+//! the number of triangles that cover a point equals the number of times that the outline goes
+//! around the point. The outline goes once around each point inside, and not at all around a point
+//! outside. So exactly one triangle covers each point inside the outline, and no triangle covers a
+//! point outside.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -27,7 +29,7 @@ pub type Triangle = [usize; 3];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrianglesError {
-    /// The index of a corner is not an index of `at`.
+    /// A corner of the triangle is not a valid index into `at`.
     #[error("corner {corner} does not exist; `at` has {conditions} elements, counted from 0")]
     Corner { triangle: usize, corner: usize, conditions: usize },
     /// A triangle has the same corner twice.
@@ -78,8 +80,7 @@ impl TrianglesError {
 const FLAT: f64 = 1e-9;
 
 /// Checks triangles between conditions. Each condition is a speed (mm/s) and a force (newtons),
-/// both finite and not negative. An empty list of triangles is valid: it means that the asset
-/// stores no triangles.
+/// both finite and not negative. An empty list is valid, because an asset need not store triangles.
 ///
 /// ```
 /// use htex_format::check_triangles;

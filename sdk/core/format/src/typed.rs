@@ -6,9 +6,10 @@
 //! a Rust type. The same traversal yields the JSON pointers of errors and unknown keys.
 //!
 //! The project has its own deserializer because serde_json accepts an array for a derived struct,
-//! and `null` for an optional key. It would accept files that other readers of `spec/htex-1.md`
-//! refuse. The packages `serde_path_to_error` and `serde_ignored` could only replace the path in
-//! this deserializer, and they do not see unknown keys next to the key of a variant.
+//! and `null` for an optional key. With serde_json, htex would accept files that other readers of
+//! `spec/htex-1.md` refuse. The packages `serde_path_to_error` and `serde_ignored` are no
+//! replacement: they only report the paths of errors and of unknown keys, and they miss unknown
+//! keys next to the key of a variant.
 
 use std::cell::RefCell;
 use std::fmt::{self, Write};

@@ -1,4 +1,4 @@
-//! Reads and validates an asset; both use the same code.
+//! Reads and validates assets. Reading and validation use the same code.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -20,8 +20,8 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file. Reports every broken rule that it can detect
-/// independently of the rules reported before. Never panics, and reads no more than `limits` allow.
+/// Validates the bytes of a `.htex` file. Reports every broken rule that does not merely follow
+/// from a rule reported before. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
@@ -33,8 +33,8 @@ pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Re
     Report { valid: asset.is_some(), findings }
 }
 
-/// Returns an asset's manifest as JSON, even if the manifest is not valid. Returns `None` if it
-/// cannot be unpacked or is not JSON.
+/// Returns an asset's manifest as JSON, even if the manifest is not valid. Returns `None` if the
+/// manifest cannot be unpacked or is not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;

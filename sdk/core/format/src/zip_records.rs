@@ -22,7 +22,7 @@ pub(crate) struct End {
     pub directory_bytes: u32,
     pub directory_at: u32,
     pub comment_bytes: u16,
-    /// Whether a ZIP64 locator precedes the record.
+    /// Whether a locator for ZIP64 records precedes this record.
     pub zip64: bool,
 }
 

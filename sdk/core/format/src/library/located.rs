@@ -9,7 +9,7 @@ use crate::library::opening::FIRST_READ;
 use crate::library::reader::Library;
 use crate::library::source::{LibrarySource, LocalFile};
 
-/// A local or remote file. Only the requested ranges of it are read.
+/// A local or remote file, from which the program reads only the ranges that it needs.
 #[derive(Debug)]
 pub enum LibraryFile {
     /// A local file.
@@ -22,8 +22,8 @@ impl Library<LibraryFile> {
     /// Opens a library by path or URI, within the default [`Limits`](crate::library::Limits).
     ///
     /// Opening one texture of a remote file takes three requests: the start of the file, a page of
-    /// the index, and the texture. If the first request already contains the whole index, opening
-    /// takes two requests.
+    /// the index, and the texture. For a small library, the start of the file already contains the
+    /// whole index, and two requests are enough.
     ///
     /// # Errors
     /// The errors of [`Library::open`], or [`LibraryError::Storage`] if a remote file cannot be

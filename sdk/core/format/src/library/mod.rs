@@ -1,9 +1,10 @@
 //! Reads, writes and validates `.htexlib` files: thousands of textures in one file. A reader can
 //! open one texture without reading the others.
 //!
-//! `spec/htexlib-1.md` is the normative specification. The file starts with an index, which
-//! consists of compressed pages sorted by name. However large the library is, opening one texture
-//! takes three reads: the start of the file, a page of the index, and the texture.
+//! `spec/htexlib-1.md` is the normative specification. The file starts with a header and an index.
+//! The index consists of compressed pages, and lists the textures sorted by name. However large the
+//! library is, opening one texture takes three reads: the start of the file, a page of the index,
+//! and the texture.
 //!
 //! ```
 //! use htex_format::library::{Library, Writer};
@@ -33,8 +34,9 @@
 //! ```
 //!
 //! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and
-//! [`Opening`] do no input or output and only say which bytes of the file they need. [`Library`]
-//! reads these bytes from a [`LibrarySource`]. In a browser, a page can fetch them instead.
+//! [`Opening`] do no input or output: they only return which bytes of the file they need.
+//! [`Library`] reads the needed bytes from a [`LibrarySource`]. In a browser, a web page can fetch
+//! the needed bytes from a server.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -32,19 +32,19 @@ pub enum InvalidName {
         "it contains {0:?}; leave out control characters, invisible characters, and \\ : * ? \" < > |"
     )]
     Character(char),
-    /// A part between slashes is empty, `.` or `..`.
+    /// One of the parts between the slashes of the name is empty, `.` or `..`.
     #[error("a part of it is empty, `.` or `..`; write the parts with one `/` between them")]
     Part,
-    /// A part is too long for a file name.
+    /// A part of the name is too long for a file name.
     #[error("a part of it has {0} bytes and the most is 250; shorten it")]
     LongPart(usize),
-    /// A folder has a name that ends like a texture's file.
+    /// A part of the name that denotes a folder ends in `.htex`, like the name of a texture's file.
     #[error("a part of it before a `/` ends in .htex, as a texture's file; rename it")]
     Folder,
-    /// A part ends in a space or a dot, which Windows removes.
+    /// A part of the name ends in a space or a dot, which Windows would remove.
     #[error("a part of it ends in a space or a dot; remove it")]
     End,
-    /// A part is a device name of Windows.
+    /// A part of the name is the name of a device of Windows, such as `CON`.
     #[error("a part of it is a device of Windows, such as CON or COM1; rename it")]
     Device,
 }
@@ -95,8 +95,8 @@ pub(crate) fn file_key(name: &str) -> [u8; 16] {
     start
 }
 
-/// A set of texture names that denote different files on every system. The packer, the validator
-/// and the unpacker use it to find names that denote the same file.
+/// A set of texture names that denote different files on every operating system. The packer, the
+/// validator and the unpacker use this set to find names that denote the same file.
 ///
 /// ```
 /// let mut names = htex_format::library::Names::default();
@@ -109,8 +109,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// Adds a name. Returns false if some system would treat it and an earlier name as the same
-    /// file, because they differ only in case or in Unicode normalisation.
+    /// Adds a name. Returns false if the name differs from an earlier name only in case or in
+    /// Unicode normalisation, because some operating systems treat two such names as the same file.
     pub fn insert(&mut self, name: &str) -> bool {
         self.seen.insert(file_key(name))
     }

@@ -1,4 +1,5 @@
-//! Opens a library without doing input or output: it tells the caller which bytes it needs next.
+//! Opens a library without doing input or output: [`Opening`] tells the caller which bytes of the
+//! file it needs next.
 
 use std::ops::Range;
 
@@ -11,11 +12,12 @@ use crate::library::page;
 use crate::library::root::{PLACE, Root};
 use crate::library::rules as rule;
 
-/// Size of the first read, bytes. It contains the header and the root page of all but huge
-/// libraries.
+/// Size of the first read, bytes. Except in huge libraries, the first read contains the header and
+/// the whole root page.
 pub const FIRST_READ: u64 = 16 << 10;
 
-/// A library that is being opened. The caller passes bytes to it until it becomes an [`Index`].
+/// A library that is being opened. The caller passes bytes of the file to an `Opening` until
+/// [`Self::give`] returns an [`Index`].
 ///
 /// ```
 /// use htex_format::library::{Index, LibraryError, Limits, Opening, Progress};
@@ -45,7 +47,7 @@ pub struct Opening {
 /// Result of [`Opening::give`].
 #[derive(Debug)]
 pub enum Progress {
-    /// More bytes are needed. [`Opening::wanted`] says which.
+    /// More bytes of the file are needed. [`Opening::wanted`] returns their range.
     More(Opening),
     /// The library is open.
     Open(Index),
@@ -57,8 +59,8 @@ impl Opening {
         Self { limits, start: Vec::new(), header: None }
     }
 
-    /// Returns which bytes of the file are needed next. The file may end before the end of this
-    /// range.
+    /// Returns which bytes of the file are needed next. The returned range may end after the end of
+    /// the file.
     pub fn wanted(&self) -> Range<u64> {
         let have = self.start.len() as u64;
         match &self.header {

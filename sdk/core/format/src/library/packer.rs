@@ -1,9 +1,9 @@
 //! Packs textures into a library.
 //!
-//! The packer knows which modules are shared only after the last texture. So it first writes added
-//! textures to a spool, and writes the library when it is finished. It orders textures by name and
-//! shared objects by hash, so that the same textures always give the same file, whatever the order
-//! in which they were added.
+//! Only after the last texture does the packer know which modules are shared. So the packer first
+//! writes each added texture to a temporary store, the spool, and writes the library at the end.
+//! The packer orders textures by name, and shared objects by hash. So the same textures always give
+//! the same file, in whatever order they were added.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -72,7 +72,7 @@ pub struct PackSummary {
     pub index_bytes: u64,
     /// Number of objects that several textures share.
     pub shared_objects: u64,
-    /// Bytes that the file does not need because textures share objects.
+    /// Number of bytes that the file saves because it stores shared objects only once.
     pub saved_bytes: u64,
     /// BLAKE3 of the index, which identifies the library.
     pub blake3: [u8; 32],

@@ -1,4 +1,4 @@
-//! Search for textures by their entries.
+//! Searches a library's index for textures with given properties.
 
 use crate::Condition;
 
@@ -25,10 +25,10 @@ pub struct Query {
     pub words: Vec<String>,
     /// Tags that the texture must have, ignoring case.
     pub tags: Vec<String>,
-    /// Speed, mm/s, that must lie in the recorded range, or outside it by at most 5 %
+    /// Speed, mm/s, that must lie in the texture's recorded range of speeds, widened by 5 %
     /// ([`crate::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
-    /// Force, newtons, that must lie in the recorded range, with the same tolerance as the speed.
+    /// Force, newtons, that must lie in the texture's recorded range of forces, widened by 5 %.
     pub force_n: Option<f64>,
     /// Id of a model that describes the texture, or the last part of the id.
     pub model: Option<String>,

@@ -5,8 +5,8 @@ use crate::library::error::LibraryError;
 use crate::library::fault::Fault;
 use crate::library::rules as rule;
 
-/// Adds up the bytes of textures that are read one after another, and compares them with
-/// [`crate::library::Limits::ratio`] times the bytes of the file. A program that reads all
+/// Adds up the sizes of the textures that a program reads. The sum may be at most
+/// [`crate::library::Limits::ratio`] times the size of the library's file. A program that reads all
 /// textures, e.g. to check or to unpack them, must add each texture before it reads the texture.
 #[derive(Debug, Clone)]
 pub struct Ratio {
@@ -23,7 +23,7 @@ impl Ratio {
     /// Adds the size of a texture that the program is going to read.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if the textures so far exceed the limit together.
+    /// [`LibraryError::Invalid`] if the total size of all textures added so far exceeds the limit.
     pub fn add(&mut self, entry: &Entry) -> Result<(), LibraryError> {
         Ok(self.count(entry, "")?)
     }

@@ -14,7 +14,7 @@ use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
 
-/// A library of textures. It reads a texture only on request.
+/// An open library of textures. The library reads the bytes of a texture only on request.
 ///
 /// The library caches the page of the index that it used last. If the name of the next texture is
 /// on the same page, opening that texture takes only one read. Threads can share a library.
@@ -118,7 +118,8 @@ impl<S: LibrarySource> Library<S> {
         &self.index
     }
 
-    /// Reads a texture by name. Returns the bytes of its `.htex` file, whose hash has been checked.
+    /// Reads a texture by name. Returns the bytes of the texture's `.htex` file, after checking
+    /// their hash.
     ///
     /// # Errors
     /// [`LibraryError::Absent`] if there is no such texture, or another error if bytes cannot be

@@ -1,5 +1,5 @@
-//! The root page: the library's name, and for every leaf page a separator, at which its names
-//! begin, and its length.
+//! The root page of the index. It contains the library's name and, for each leaf page, the length
+//! of the page and a separator. The names on a leaf page are not smaller than the page's separator.
 //!
 //! The root page of a million textures fits into the first 16 KiB of the file, so that the first
 //! read contains it.

@@ -1,9 +1,9 @@
 //! Decides which embedded modules the textures of a library share, and where the file contains
 //! their bytes.
 //!
-//! The writer finds modules that several textures embed by their hash, and stores them only once. A
-//! module that only one texture embeds stays among that texture's own bytes, because sharing it
-//! would save nothing.
+//! The writer compares the hashes of all embedded modules. It stores a module that several textures
+//! embed only once. A module that only one texture embeds stays among that texture's own bytes,
+//! because sharing it would save nothing.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Stores textures temporarily while a library is written, with every embedded module only once.
-//! The spool is a file next to the library, or memory.
+//! The spool: a temporary store for the added textures while a library is written. Every embedded
+//! module is stored in the spool only once. The spool is a file next to the library, or memory.
 
 use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -56,7 +56,7 @@ pub(crate) struct Spool<S> {
 /// An embedded module.
 pub(crate) struct Module {
     pub blake3: [u8; 32],
-    /// Range of its bytes in the spool.
+    /// Range of the module's bytes in the spool.
     pub at: Range<u64>,
     /// Number of times that textures embed the module.
     pub uses: u64,
@@ -65,10 +65,10 @@ pub(crate) struct Module {
 /// Place of a texture's bytes in the spool.
 #[derive(Debug, Clone)]
 pub(crate) struct SpoolRange {
-    /// Range of all bytes except the modules.
+    /// Range of the texture's own bytes, i.e. of all its bytes except its modules.
     pub own: Range<u64>,
-    /// A pair for each module: how many of the texture's own bytes come before the module, and the
-    /// module's index in the spool.
+    /// A pair of numbers for each module of the texture. The first number says how many of the
+    /// texture's own bytes precede the module; the second is the module's index in the spool.
     pub modules: Box<[(u32, u32)]>,
 }
 

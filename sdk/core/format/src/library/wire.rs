@@ -1,5 +1,6 @@
-//! Encoding of numbers and texts in pages: little-endian numbers, LEB128 integers, and texts
-//! without the prefix that they share with the text before.
+//! Encoding of numbers and texts in pages: little-endian numbers, LEB128 integers, and
+//! prefix-compressed texts. The encoding of a text leaves out the prefix that the text has in
+//! common with the previous text.
 
 /// Longest text in a page, bytes: a name, a tag or the id of a model.
 pub(crate) const TEXT_BYTES: usize = 255;

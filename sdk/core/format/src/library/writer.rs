@@ -17,8 +17,8 @@ const BUFFER_BYTES: usize = 1 << 20;
 ///
 /// The writer stores added textures in a temporary file next to the target. It keeps only the index
 /// in memory, about 500 bytes for each texture. [`Self::finish`] writes the library to another
-/// temporary file and renames it to the target. A writer that is dropped before that leaves no file
-/// behind.
+/// temporary file and renames it to the target. If the writer is dropped without a call of
+/// `finish`, no file remains.
 ///
 /// ```no_run
 /// let mut writer = htex_format::library::Writer::create("cloth.htexlib".as_ref(), "Cloth")?;
@@ -34,8 +34,8 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Starts a library. `path` is the file to write. Programs show `name` to users; it may be
-    /// empty.
+    /// Starts a library. `path` is the file to write. `name` is the library's name, which programs
+    /// show to users; it may be empty.
     ///
     /// # Errors
     /// If the name has a control character or more than 255 bytes, or if the folder of `path` does
@@ -47,8 +47,8 @@ impl Writer {
         Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
 
-    /// Allows textures that state no licence. Without this call, [`Self::finish`] refuses them,
-    /// because only the people who made such a texture may pass it on.
+    /// Allows textures that state no licence. Without this call, [`Self::finish`] returns an error
+    /// for such textures, because nobody except their authors may pass them on.
     pub fn allow_unlicensed(&mut self) {
         self.packer.allows_unlicensed = true;
     }

@@ -13,8 +13,8 @@ const EXCEPTIONS: &str = include_str!("exceptions.txt");
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Token {
-    /// A listed licence. `gnu` says whether it is a GNU licence; their ids state themselves whether
-    /// later versions are allowed.
+    /// A listed licence. `gnu` is true for a GNU licence, whose id itself states whether later
+    /// versions are allowed (`-only`, `-or-later`).
     License {
         gnu: bool,
     },

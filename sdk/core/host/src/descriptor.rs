@@ -5,8 +5,8 @@ use htex_model::{Descriptor, Field, FitOption, Kind, is_model_id};
 
 use crate::error::plain;
 
-/// The reason why a descriptor is invalid. The message escapes control characters in text that it
-/// quotes from the descriptor.
+/// The reason why a descriptor is invalid. Where the error message quotes text of the descriptor,
+/// control characters are escaped.
 ///
 /// ```
 /// use htex_host::{DescriptorError, read_descriptor};
@@ -37,7 +37,7 @@ pub enum DescriptorError {
     /// The range of a field or fit option is empty or not finite.
     #[error("`{name}` has the invalid range {range}")]
     Range { name: String, range: String },
-    /// A field has a default outside its range, or is a list with a default.
+    /// The default of a field lies outside the field's range, or a list field has a default.
     #[error("`{name}` has a default outside its range, or is a list")]
     Default { name: String },
     /// A name, unit or choice contains control characters.
@@ -59,7 +59,7 @@ pub enum DescriptorError {
 /// each list. The limit keeps a descriptor from making a sweep take any amount of memory.
 const MAX_SWEEP: usize = 1_000;
 
-/// Reads and checks a descriptor in JSON, as every loader does.
+/// Reads a descriptor from JSON and checks it. Every loader of models uses this function.
 ///
 /// # Errors
 /// [`DescriptorError`] if the text is not a valid descriptor.

@@ -36,7 +36,7 @@ pub enum HostError {
         /// The names in the registry.
         known: String,
     },
-    /// A module contains another model than the declared model.
+    /// A module contains a different model from the one that its asset or recipe declares.
     #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.

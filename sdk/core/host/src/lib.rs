@@ -2,9 +2,9 @@
 //! the same way, wherever they come from.
 //!
 //! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]). [`Search`]
-//! lists the places in which this crate looks for models. It calls every model, including the
-//! built-in models, through the C functions of the model ABI, and checks the results of each call.
-//! If a result is invalid, only that call returns an error; the model can be called again.
+//! lists the places in which this crate looks for models. This crate calls models through the
+//! functions of the model ABI, even if they are built in, and checks the results of each call. If a
+//! result is invalid, the call returns an error, and the program can call the model again.
 //!
 //! ```
 //! use htex_host::{Band, Registry};

@@ -1,7 +1,8 @@
 //! Limits of WASM models.
 //!
-//! They limit each module's memory, tables, stack, voices, time and cost of compilation, the totals
-//! of all modules, and optionally the number of instructions. The tests in
+//! Each module has limits for its memory, tables, stack, number of voices, running time and
+//! compilation, and optionally for its number of instructions. All modules together have limits for
+//! their total time, memory and number of instances. The tests in
 //! `sdk/core/host/tests/it/limits.rs` exceed each limit once.
 
 use std::path::PathBuf;
@@ -30,7 +31,8 @@ pub struct WasmLimits {
     /// Largest stack of WASM code, bytes. This stack is part of the calling thread's stack. Default
     /// 256 KiB.
     pub stack_bytes: usize,
-    /// Maximum number of voices of one model at a time. Each has a separate instance. Default 256.
+    /// Maximum number of voices of one model at a time. Each voice has a separate instance of the
+    /// module. Default 256.
     pub voices: usize,
     /// Longest time of the module's start function, and of one call that does not render. Default 5
     /// s.
@@ -43,12 +45,13 @@ pub struct WasmLimits {
     /// suffice, and counting makes calls up to a tenth slower.
     pub fuel: Option<u64>,
     /// Longest time of compiling the module. Default 5 s. The host estimates the time before
-    /// compilation. If the time might exceed the limit, the host compiles the module without
-    /// optimisation. If even this might exceed the limit, the host refuses the module.
+    /// compilation. If the estimate exceeds this limit, the host compiles the module without
+    /// optimisation. If the estimate for compilation without optimisation also exceeds the limit,
+    /// the host refuses the module.
     pub compile: Duration,
-    /// Maximum memory for compiling a module, bytes. It applies only to [`WasmCompiler::Program`].
-    /// Default 512 MiB. A module whose estimated time is within `compile` needs less memory than
-    /// this.
+    /// Maximum memory for compiling a module, bytes. The limit applies only to
+    /// [`WasmCompiler::Program`]. Default 512 MiB, which suffices for every module whose estimated
+    /// time is within the default of `compile`.
     pub compile_bytes: usize,
     /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
@@ -61,15 +64,16 @@ pub struct WasmLimits {
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
-    /// For checkers of models: whether a call fails if it writes beyond its arrays within the
-    /// module's own memory. Default false, because such a call harms only the module itself.
+    /// For checkers of models: whether the host detects a call that writes beyond its arrays within
+    /// the module's own memory, and returns an error. Default false, because such a call harms only
+    /// the module itself.
     pub guards: bool,
 }
 
-/// The engine that runs modules. The variants differ in the process resources that the engine uses.
-/// While a module is loaded, every engine except `Off` has one thread, which stops calls at their
-/// time limit. A browser runs modules with its own engine; `Off` turns that engine off, and the
-/// other variants turn it on.
+/// The engine that runs modules. The variants differ in what the engine uses of the process:
+/// threads and signal handlers. While a module is loaded, every engine except `Off` has one thread,
+/// which stops calls at their time limit. A browser runs modules with its own engine; `Off` turns
+/// that engine off, and the other variants turn it on.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -84,8 +88,8 @@ pub enum WasmEngine {
     /// Loading a module is an error. No thread, file or handler is created.
     Off,
     /// Modules run without signal handlers. Instead, the engine compares each memory access with
-    /// the memory's bound. It turns off the measures against speculative execution that need signal
-    /// handlers.
+    /// the memory's bound. Without signal handlers, the engine also does without some measures
+    /// against attacks by speculative execution.
     Checked,
     /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. If no module
     /// caused a signal, these handlers pass it to the handlers that the process had before.
@@ -103,9 +107,9 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time for compilation and for all calls except the calls of voices. The time left grows by a
-    /// tenth of the elapsed time, up to this total. Each voice has a separate allowance: one
-    /// second, and ten times the duration of its samples.
+    /// Time for compilation and for all calls except the calls of voices. While the program runs, a
+    /// tenth of the elapsed time is added to the time that is left, up to this total. Each voice
+    /// has a separate allowance: one second, and ten times the duration of its samples.
     pub time: Duration,
     /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
@@ -141,12 +145,13 @@ impl WasmTotal {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCompiler {
-    /// This process compiles. It checks an estimate of the time against the limit `compile`, and
-    /// does not check `compile_bytes`.
+    /// This process compiles the module. Before compilation, it compares an estimate of the time
+    /// with the limit `compile`. It does not check the limit `compile_bytes`.
     #[default]
     Here,
-    /// Another process compiles. The host stops it if it exceeds the limits of time or memory. The
-    /// program must call `htex_host::serve_compiler` when it is started with these arguments.
+    /// Another process compiles the module: the host starts this program with these arguments. The
+    /// program must then call `htex_host::serve_compiler`. The host stops the process if
+    /// compilation exceeds the limit of time or memory.
     Program(PathBuf, Vec<String>),
 }
 
@@ -218,11 +223,12 @@ impl WasmLimits {
 
 /// Cache of compiled modules on disk.
 ///
-/// A cached file is machine code that this program runs, so three measures protect the cache. The
-/// program creates the folder with permissions for this user only (mode 0700). It does not use a
-/// folder that belongs to another user or to which other users may write. It authenticates each
-/// file with a key that only this user can read (`wasm.key` in the user's configuration folder). If
-/// a file is damaged, or another version wrote it, the program compiles the module again.
+/// A cached file is machine code that this program runs, so three measures protect the cache.
+/// First, the program creates the folder with permissions for this user only (mode 0700). Second,
+/// the program does not use a folder that belongs to another user or to which other users may
+/// write. Third, the program authenticates each file with a key that only this user can read
+/// (`wasm.key` in the user's configuration folder). If a file is damaged, or another version wrote
+/// it, the program compiles the module again.
 ///
 /// ```
 /// use htex_host::{Search, WasmCache, WasmLimits};
@@ -236,7 +242,7 @@ pub enum WasmCache {
     /// The folder `$HTEX_CACHE_DIR/wasm`. If the variable is not set, `htex/wasm` in the user's
     /// cache folder.
     User,
-    /// This folder. Only this user may have permission to write to it.
+    /// The given folder. No other user may have permission to write to the folder.
     Dir(PathBuf),
     /// The program does not store compiled modules.
     Off,

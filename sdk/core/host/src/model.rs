@@ -23,7 +23,7 @@ pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Length of the parameter buffer in the first call of a function that returns parameters.
 const USUAL_PARAMETERS: usize = 256;
 
-/// A model that can be called. A clone shares the model.
+/// A model that can be called. Cloning this value does not load the model again.
 ///
 /// ```
 /// use htex_host::{Band, Registry};
@@ -117,8 +117,8 @@ impl LoadedModel {
         Err(no_wasm(&path.display().to_string()))
     }
 
-    /// Loads a model from the bytes of a WASM module. `name` is the name, in messages, of the asset
-    /// or file that contains the module.
+    /// Loads a model from the bytes of a WASM module. `name` names the asset or file that contains
+    /// the module; error messages contain this name.
     ///
     /// # Errors
     /// When the bytes are not a module, its model violates the ABI, or this program was built
@@ -174,9 +174,9 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Fits the model to a spectrum. `input.options` has one value for each option of the
-    /// descriptor; [`Self::options`] returns such values. Only models that follow the motion
-    /// ([`Self::follows_motion`]) receive `input.condition`. Needs the feature `fit`.
+    /// Fits the model to a spectrum. `input.options` must contain one value for each option of the
+    /// descriptor, in their order; [`Self::options`] makes this list. Only models that follow the
+    /// motion ([`Self::follows_motion`]) receive `input.condition`. Needs the feature `fit`.
     ///
     /// ```
     /// use htex_host::{Band, FitCondition, FitInput, Registry};
@@ -198,8 +198,8 @@ impl LoadedModel {
     /// ```
     ///
     /// # Errors
-    /// [`HostError::Call`] if the model cannot describe the spectrum. For a model that follows the
-    /// motion, also if a speed or force is negative or not finite.
+    /// [`HostError::Call`] if the model cannot describe the spectrum. Models that follow the motion
+    /// also return this error if the speed or the force is negative or not finite.
     #[cfg(feature = "fit")]
     pub fn fit(&self, input: &FitInput<'_>) -> Result<Fit, HostError> {
         let call = "fit";
@@ -275,8 +275,8 @@ impl LoadedModel {
         most.sum::<usize>().min(MAX_PARAMETERS)
     }
 
-    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the rate that the caller needs;
-    /// the model may return another rate, from which the caller resamples.
+    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the rate that the caller needs. If
+    /// the model returns another rate, the caller must resample the voice's samples.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -296,8 +296,8 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Returns whether `rate_hz` is the model's own rate, i.e. a rate that the model returns
-    /// whatever rate is requested. To find out, this function requests a high rate.
+    /// Returns whether `rate_hz` is the model's own rate, i.e. the rate that the model returns for
+    /// every requested rate. This function finds out by requesting a much higher rate.
     ///
     /// # Errors
     /// The errors of [`Self::voice_rate_hz`].
@@ -332,8 +332,8 @@ impl LoadedModel {
         }
     }
 
-    /// For checkers of models: renders two equal voices of `frames` samples, one after the other,
-    /// in a single instance of a WASM module. In normal use this host gives each voice its own
+    /// For checkers of models: renders two equal voices, one after the other, in a single instance
+    /// of a WASM module, `frames` samples for each voice. In normal use, each voice has its own
     /// instance. Returns `None` for a model that is not a WASM module.
     ///
     /// # Errors
@@ -365,9 +365,10 @@ impl LoadedModel {
         }
     }
 
-    /// Returns whether the model has the extension `htex.motion/1`. If so, its voices receive the
-    /// motion of the finger ([`ModelVoice::set_motion`]) and follow it themselves, and its fits
-    /// receive the speed and force of the recording.
+    /// Returns whether the model has the extension `htex.motion/1`. The voices of such a model
+    /// receive the motion of the finger ([`ModelVoice::set_motion`]) and themselves change the
+    /// sound with the motion. The fits of such a model receive the speed and force of the
+    /// recording.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()
     }

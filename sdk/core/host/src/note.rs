@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use crate::{HostError, Origin};
 
-/// A note for the user about a problem during a search for models. Unlike an error, it did not end
-/// the search.
+/// A note for the user about a problem during a search for models. The search continued after the
+/// problem.
 ///
 /// ```
 /// use htex_host::{Note, Registry, Search};

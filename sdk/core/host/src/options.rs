@@ -5,9 +5,9 @@ use htex_model::FitOption;
 use crate::{HostError, LoadedModel};
 
 impl LoadedModel {
-    /// Returns one value for each of the model's options. `given` contains pairs of an option's
-    /// name and its value as text; the text of a choice is its name. An option that is not in
-    /// `given` has its default.
+    /// Returns one value for each of the model's options. `given` contains pairs: the name of an
+    /// option, and its value as text. For an option with named choices, this text is the name of a
+    /// choice. Each option that is not in `given` gets its default value.
     ///
     /// # Errors
     /// [`HostError::UnknownOption`], or [`HostError::OptionValue`] with the allowed values.

@@ -17,8 +17,8 @@ pub enum Origin {
     Builtin,
     /// A Rust type that this program registered.
     Own,
-    /// An object that the program registered at run time. The text names the programming language
-    /// of the object.
+    /// An object that the program registered at run time. The text is the name of the object's
+    /// programming language.
     Runtime(String),
     /// A native library, which runs with all the rights of this program.
     Native(PathBuf),

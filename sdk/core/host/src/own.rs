@@ -1,4 +1,4 @@
-//! Models of the program itself: turns types that implement [`Model`] into objects.
+//! Models that the program itself adds: converts types that implement [`Model`] to objects.
 
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
-//! For checkers of models: calls with arrays of the caller, and with invalid arrays that a host
-//! never passes. Apps do not need these functions.
+//! For checkers of models: calls a model with buffers of any size, and with invalid arrays that a
+//! host never passes. Apps do not need these functions.
 //!
-//! These functions hardly check results: only a negative answer is an error.
+//! These functions hardly check what the model returns: only a negative number becomes an error.
 
 use htex_dsp::grid::Band;
 #[cfg(feature = "fit")]
@@ -28,7 +28,7 @@ pub struct ProbeArguments<'a> {
     pub options: &'a [f64],
 }
 
-/// The answer to a call with an unusable array.
+/// The result of a call with an invalid array.
 #[derive(Debug, Clone)]
 pub struct Unusable {
     /// Names of the function and the array, e.g. "`magnitude` with null `parameters`".
@@ -40,8 +40,8 @@ pub struct Unusable {
 }
 
 impl LoadedModel {
-    /// Fits the model. Writes the parameters to `parameters`, which may be too short, and writes
-    /// the level. Returns the number of parameters of the fit.
+    /// Fits the model. Writes the level to `level_rms`, and the parameters to `parameters`, which
+    /// may be too short. Returns the number of parameters of the fit.
     ///
     /// # Errors
     /// If the model returns an error.
@@ -110,8 +110,9 @@ impl ModelVoice {
         self.done("voice_render", answer)
     }
 
-    /// Calls `htex_voices_1_render` with the voices at these indices. An index may occur twice, or
-    /// belong to no voice. Returns `None` if the model does not have the extension.
+    /// Calls `htex_voices_1_render` with the voices at these indices. The same index may occur
+    /// twice, and an index need not belong to a voice. Returns `None` if the model does not have
+    /// the extension.
     pub fn render_any_together(
         voices: &mut [Self],
         numbers: &[usize],

@@ -1,8 +1,9 @@
-//! The calls of the model ABI, with slices instead of pointers. Each loader implements them.
+//! Traits with the calls of the model ABI, with slices instead of pointers. Each loader of models
+//! implements these traits.
 //!
-//! Every model, including the built-in ones, is called through one table of C functions, so the
-//! code that uses models does not depend on the loader. [`crate::table`] serves built-in models and
-//! native libraries, and `wasm` serves modules.
+//! The code that uses models calls only these traits, so it does not depend on the loader.
+//! [`crate::table`] implements the traits for built-in models and native libraries, `wasm` for
+//! modules, and [`crate::runtime`] for models that are objects.
 
 use htex_model::abi::{ABI_MAJOR, ABI_MARKER, ModelTable};
 use htex_model::voices_1::VoicesRenderFn;

@@ -1,5 +1,5 @@
-//! The magnitude that one would measure in a recording of a voice. It can differ from the model's
-//! magnitude.
+//! The magnitude that one would measure in a recording of a voice. This magnitude can differ from
+//! the model's magnitude.
 
 use htex_dsp::grid::{GRID_HZ, level_rms};
 use htex_dsp::resample::OwnRate;
@@ -18,8 +18,8 @@ const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
     /// Returns whether the model's magnitudes describe spectral lines, as a window measures them,
-    /// instead of a density. This is true for sinusoids. It is also true for models that follow the
-    /// motion, because a finger crosses their surface repeatedly.
+    /// instead of a density. Sums of sinusoids have lines. Models that follow the motion also have
+    /// lines, because a finger crosses their surface repeatedly.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
@@ -28,12 +28,13 @@ impl LoadedModel {
     /// s, on the band's grid and with unit RMS. A bin next to a steep flank measures part of the
     /// flank. A bin at an edge of the band measures frequencies up to half a bin beyond the edge.
     /// If the model has its own sample rate, the result includes the effect of resampling to a high
-    /// rate; its RMS is then [`Self::played_part`].
+    /// rate. The RMS of the result is then not 1, but [`Self::played_part`].
     ///
     /// A voice plays its model's magnitude as a density. If the model keeps energies
     /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
-    /// [sharpened](sharpen). For sinusoids, the model's magnitude already is the magnitude that a
-    /// window measures within its main lobe.
+    /// [sharpened](sharpen). For models with spectral lines ([`Self::has_lines`]), this function
+    /// returns the model's magnitude. For sums of sinusoids, that magnitude is what a window
+    /// measures within its main lobe.
     ///
     /// # Errors
     /// The errors of [`Self::magnitude`].
@@ -64,10 +65,10 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns the level at which a player plays a voice, as a fraction of the voice's level,
-    /// measured in the bins of the band. The fraction is below 1 if the model has its own rate and
-    /// resampling to the player's rate removes power near half of the model's rate (about 0.7 if
-    /// all of the power lies there).
+    /// Returns which fraction of a voice's level remains after resampling to the player's rate,
+    /// measured in the bins of the band. The fraction is 1, except for models with their own sample
+    /// rate. For these models, resampling removes power near half of the model's rate; the fraction
+    /// is about 0.7 if all of the power lies there.
     ///
     /// # Errors
     /// The errors of [`Self::magnitude`].

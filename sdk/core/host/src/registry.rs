@@ -15,10 +15,11 @@ use crate::{builtin, own};
 ///
 /// - A model whose file the user named, or that the program added, takes precedence. Among several
 ///   such models, the one that was added first takes precedence.
-/// - Among installed models and the built-in model, the newest of each major version is used,
-///   wherever it was found. Among equal versions, the first one in the order of [`Search`] is used.
-///   Major versions are ordered by the first place that contains them (the plugin folders, the
-///   user's folder, this program). Within one place, the newest major version comes first.
+/// - Among installed models and the built-in model, only the newest of each major version is
+///   considered, wherever it was found. Among equal versions, the first one in the order of
+///   [`Search`] is used. The order of the places (the plugin folders, the user's folder, this
+///   program) decides between major versions: the major version in the first place is used. If one
+///   place contains several major versions, the newest is used.
 ///
 /// The other models are returned only if their version is requested.
 ///
@@ -141,8 +142,8 @@ impl Registry {
         }
     }
 
-    /// Returns the registry of one asset. Modules that are added to it share the limits
-    /// [`WasmLimits::asset`], within the total of all modules of this registry.
+    /// Returns a registry for one asset. The modules that a program adds to the new registry share
+    /// the limits [`WasmLimits::asset`], and also count towards the total of this registry.
     #[must_use]
     pub fn of_asset(self) -> Self {
         Self { sandbox: self.sandbox.of_asset(), ..self }
@@ -158,9 +159,9 @@ impl Registry {
         }
     }
 
-    /// Adds a model of this program: a type that implements [`Model`]. It takes precedence over all
-    /// other models with the same id, except models that the user named or the program added
-    /// before.
+    /// Adds a model of this program: a type that implements [`Model`]. The new model takes
+    /// precedence over all other models with the same id, except models that the user named or that
+    /// the program added earlier.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -209,8 +210,8 @@ impl Registry {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
 
-    /// Adds a model that follows the motion itself (the extension `htex.motion/1`). Otherwise the
-    /// same as [`Self::add_model`].
+    /// Adds a model that itself follows the motion (the extension `htex.motion/1`), and is
+    /// otherwise the same as [`Self::add_model`].
     ///
     /// # Errors
     /// The errors of [`Self::add_model`].
@@ -227,8 +228,9 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model that is described at run time. `written_in` becomes its [`Origin::Runtime`]. It
-    /// has the same precedence as a model added by [`Self::add_model`].
+    /// Adds a model that is described at run time. `written_in` is the name of the programming
+    /// language, for [`Origin::Runtime`]. The model has the same precedence as a model added by
+    /// [`Self::add_model`].
     ///
     /// # Errors
     /// When the descriptor is invalid, or longer than 1 MiB in JSON.
@@ -242,9 +244,10 @@ impl Registry {
         self.add_described(origin, RuntimeModelAdapter::new(descriptor, model)?)
     }
 
-    /// Adds the WASM model of a container, such as an asset; `name` is the container's name. In the
-    /// order of precedence, it follows plugins that the user named by their files, and precedes all
-    /// other models. A native library cannot be added in this way.
+    /// Adds the WASM model of a container, such as an asset; `name` is the container's name.
+    /// Plugins that the user named by their files, and models that the program added, take
+    /// precedence over this model. This model takes precedence over all other models. This function
+    /// refuses native libraries.
     ///
     /// # Errors
     /// When the bytes are not a module, or its model violates the ABI.
@@ -354,7 +357,7 @@ impl Registry {
     }
 
     /// Returns the models that a program fits if the user names no model: all except models whose
-    /// descriptor says [`only_named`](Descriptor::only_named).
+    /// descriptor sets [`only_named`](Descriptor::only_named).
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
         self.models.iter().filter(|model| !model.descriptor().only_named)
     }

@@ -113,7 +113,8 @@ pub trait RuntimeModel: Send + Sync + 'static {
     }
 }
 
-/// A voice of a [`RuntimeModel`]. It works like [`htex_model::Voice`], but rendering may fail.
+/// A voice of a [`RuntimeModel`]. This trait is like [`htex_model::Voice`], except that rendering
+/// may fail.
 pub trait RuntimeVoice: Send {
     /// Fills `out` with the next samples.
     ///

@@ -29,13 +29,13 @@ const FOLDER: &str = "htex/plugins";
 pub struct Search {
     /// Plugin files. A file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Module files that the user did not name, e.g. files named by a recipe. They must be WASM
-    /// modules, which run in a sandbox. Any other file is an error and is not loaded, because a
-    /// native library runs with all the rights of its user. To use a native library, the user names
-    /// it in `files`, which takes precedence over this list.
+    /// Module files that the user did not name, e.g. files named by a recipe. These files must be
+    /// WASM modules, which run in a sandbox. Any other file is an error and is not loaded, because
+    /// a native library runs with all the rights of its user. A user who wants a native library
+    /// must name it in `files`, which takes precedence over `modules`.
     pub modules: Vec<PathBuf>,
-    /// Plugin folders. A folder that cannot be read is an error. A plugin in such a folder that
-    /// cannot be loaded is only a [`Note`].
+    /// Plugin folders. A folder that cannot be read is an error. A plugin that cannot be loaded
+    /// from a folder is not an error, but gives a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,

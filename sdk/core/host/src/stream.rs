@@ -5,8 +5,8 @@ use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// A stream of samples at a requested rate. It contains a source of samples, such as a voice, and a
-/// resampler if the source has another rate.
+/// A stream of samples at a requested rate. A stream contains a source of samples, such as a voice.
+/// If the source has another rate than the stream, the stream also contains a resampler.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -25,7 +25,7 @@ pub struct Stream<S = ModelVoice> {
 
 impl<S> Stream<S> {
     /// Creates a stream at `rate_hz` from a source with samples at `source_rate_hz` and frequencies
-    /// up to `top_hz`. `own_rate` says whether the source has this rate whatever rate is requested
+    /// up to `top_hz`. `own_rate` is true if the source cannot render at any other rate
     /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
@@ -104,7 +104,7 @@ impl Stream {
     /// Fills `out` with the next samples. Does not allocate.
     ///
     /// # Errors
-    /// When the model fails. Samples that it did not render are zero.
+    /// When the model fails. Samples that the model did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         self.render_by(out, ModelVoice::render)
     }

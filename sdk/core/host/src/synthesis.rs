@@ -1,7 +1,7 @@
 //! Methods of synthesis that need less computation per sample than a model's voice: loops and
 //! filtered noise.
 //!
-//! A model need not know these methods.
+//! These methods work with every model.
 
 use std::fmt;
 use std::str::FromStr;
@@ -46,16 +46,17 @@ pub enum Synthesis {
     #[default]
     Streamed,
     /// A part of the voice, 0.1 to 60 s long, which is rendered once and repeated with a
-    /// constant-power cross-fade. It needs the least computation per sample, and four bytes of
-    /// memory per sample. The spectrum does not change. It is the spectrum of one random section of
-    /// the voice.
+    /// constant-power cross-fade. A loop needs the least computation per sample, and four bytes of
+    /// memory per sample. The spectrum does not change with time. It is the spectrum of the
+    /// repeated part, which differs a little from the spectrum of the model.
     Loop {
         /// Length of the loop, seconds.
         seconds: f64,
     },
     /// White noise through a linear-phase filter with the model's magnitude. The filter has 15 to
-    /// 4095 taps and runs at the sample rate of noise models. Its resolution in hertz is four times
-    /// that sample rate divided by the number of taps. The spectrum does not change.
+    /// 4095 taps. It runs at the lowest integer fraction of the output's sample rate that the band
+    /// allows, as the noise of most models does. Its frequency resolution is four times this lower
+    /// rate, divided by the number of taps. The spectrum does not change with time.
     Filter {
         /// Number of coefficients of the filter.
         taps: usize,
@@ -126,12 +127,12 @@ enum Generator {
 }
 
 impl StillSound {
-    /// Creates the sound of `model` at the sample rate `rate_hz`. Returns `None` for
-    /// [`Synthesis::Streamed`].
+    /// Creates a sound with the parameters of `model`, at the sample rate `rate_hz`. Returns `None`
+    /// for [`Synthesis::Streamed`].
     ///
     /// # Errors
-    /// [`HostError::Synthesis`] if the length is out of range. Another error if the model refuses
-    /// the parameters or the rate, or cannot render.
+    /// [`HostError::Synthesis`] if the length of the loop or filter is out of range. Other errors
+    /// if the model refuses the parameters or the rate, or cannot render.
     pub fn new(
         synthesis: Synthesis,
         model: &LoadedModel,

@@ -1,7 +1,7 @@
 //! Renders several voices in as few calls as their models allow.
 //!
-//! It groups adjacent voices of the same model. If a model has no function that renders several
-//! voices, its voices are rendered one by one.
+//! Adjacent voices of the same model form a group, which one call renders. If a model has no
+//! function that renders several voices, each of its voices is rendered by a separate call.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
@@ -13,11 +13,12 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 /// Fills `out` with the next `frames` samples of each voice, one voice after another. The samples
 /// are bit-identical to [`ModelVoice::render`] of each voice. Adjacent voices of the same model are
 /// rendered in one call if the model has the extension `htex.voices/1`, as the built-in models do.
-/// In blocks of 256 frames, this reduces the time for the model AR to about six tenths (`cargo
-/// xtask bench`). With fewer than 64 frames, and for models without the extension, voices are
-/// rendered separately. If `out` is too short, the remaining voices do not advance; if it is too
-/// long, the rest is filled with zeros. Does not allocate, lock or block if the models follow the
-/// ABI.
+/// The voices of a model without the extension are rendered in separate calls. If `out` is too
+/// short, the remaining voices do not advance; if `out` is too long, its rest is filled with zeros.
+/// Does not allocate, lock or block if the models follow the ABI.
+///
+/// For the model AR in blocks of 256 frames, rendering in one call reduces the time to about six
+/// tenths (`cargo xtask bench`). For fewer than 64 frames, AR saves no time.
 ///
 /// ```
 /// use htex_host::{Band, Registry, render_together};

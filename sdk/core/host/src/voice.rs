@@ -1,11 +1,12 @@
 //! A voice of a model.
 //!
-//! Only this module checks samples for NaN and infinity, whichever loader the model has. Without
-//! this check, a WASM compiler would have to canonicalise NaNs in every operation.
+//! This module checks the samples of all models for NaN and infinity, so the loaders need no such
+//! check. Because no NaN passes the check, the WASM compiler need not canonicalise NaNs in every
+//! operation.
 //!
-//! A voice interpolates the parameters of conditions itself, in buffers that were allocated with
-//! the voice. The voice of a WASM module interpolates them in its own instance. Therefore following
-//! a finger neither allocates nor locks.
+//! Each voice itself interpolates the parameters between conditions, in buffers that were allocated
+//! with the voice. The voice of a WASM module interpolates in the voice's own instance. Therefore a
+//! voice that follows a finger neither allocates nor locks.
 
 use htex_model::{Motion, Status};
 
@@ -92,10 +93,10 @@ impl ModelVoice {
         self.done("voice_retune", status)
     }
 
-    /// Changes to interpolated parameters. `sets` are concatenated. `buffer` receives the
-    /// interpolated set, which has at most [`LoadedModel::most_parameters`] numbers. The voice
-    /// interpolates in its own instance, without a lock, and without allocation if the model
-    /// follows the ABI.
+    /// Changes to parameters interpolated between several sets. `sets` contains these parameter
+    /// sets, concatenated. `buffer` receives the interpolated set, which has at most
+    /// [`LoadedModel::most_parameters`] numbers. The voice interpolates in its own instance,
+    /// without a lock, and without allocation if the model follows the ABI.
     ///
     /// # Errors
     /// When the model cannot interpolate, or `buffer` is too short. The voice then continues
@@ -133,7 +134,7 @@ impl ModelVoice {
     }
 
     /// For checkers of models: sets the motion as [`Self::set_motion`] does, but does not check the
-    /// numbers. A checker uses it to test which numbers the model refuses.
+    /// numbers. With this function, a checker tests which numbers the model refuses.
     ///
     /// # Errors
     /// The error that the model returns.
@@ -148,8 +149,9 @@ impl ModelVoice {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the voice and keeps its handle. A checker uses it to test
-    /// whether the model refuses a freed handle. An app drops the voice instead.
+    /// For checkers of models: frees the model's voice, but not this value, which keeps the handle.
+    /// With this function, a checker tests whether the model refuses a freed handle. Apps free a
+    /// voice by dropping it.
     ///
     /// # Errors
     /// The error that the model returns. A second call must return the error for an unknown handle.

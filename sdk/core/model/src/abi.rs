@@ -1,32 +1,33 @@
 //! The frozen C ABI between a host and a model: constants and function signatures.
 //!
-//! Arguments are scalars, or a pointer and a length. `usize` has the machine's own size: 8 bytes in
-//! a native library on a 64-bit machine, 4 in a WASM module. Functions that return text or
+//! Arguments are scalars, or a pointer and a length. The size of `usize` is 8 bytes in a native
+//! library on a 64-bit machine, and 4 bytes in a WASM module. Functions that return text or
 //! parameters write to the caller's buffer and return the length that they need. If the buffer is
 //! too small, the caller calls again with a larger one. Negative return values are
 //! [`crate::Status`] codes.
 //!
 //! A native library exports the functions of [`ModelTable`]. A WASM module exports these functions,
 //! its `memory`, and two more functions with which the host allocates memory for arguments:
-//! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). It imports nothing.
+//! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). A WASM module imports
+//! nothing.
 
 /// Major version. A host loads only models with its own major version.
 pub const ABI_MAJOR: u32 = 1;
-/// Minor version. It increases when optional exports are added.
+/// Minor version. Every new optional export increases the minor version.
 pub const ABI_MINOR: u32 = 0;
-/// The marker that a model returns: a fixed upper half, then the major and the minor version in one
-/// byte each.
+/// The marker that a model returns. The upper 16 bits are fixed, the next 8 bits are the major
+/// version, and the lowest 8 bits are the minor version.
 pub const ABI_MARKER: u32 = 0x4854_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
 /// Largest number of parameters in one set, including the lengths of lists.
 pub const MAX_PARAMETERS: usize = 65_536;
-/// Largest number of fields in a descriptor; the smallest is one.
+/// Largest number of fields in a descriptor. A descriptor has at least one field.
 pub const MAX_FIELDS: usize = 32;
 /// Largest number of values in one list.
 pub const MAX_LIST_LEN: u32 = 65_535;
 /// Largest size of a descriptor or an error text, bytes.
 pub const MAX_TEXT_BYTES: usize = 1_048_576;
-/// Smallest number of bins in a spectrum that is fitted.
+/// Smallest number of bins that a spectrum must have for a fit.
 pub const MIN_BINS: usize = 3;
 /// Highest band edge, hertz.
 pub const MAX_BAND_HZ: f64 = 1_000_000.0;
@@ -34,8 +35,8 @@ pub const MAX_BAND_HZ: f64 = 1_000_000.0;
 pub const MIN_RATE_HZ: f64 = 1.0;
 /// Highest rate of a signal or a voice, hertz.
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
-/// Spacing of the frequency grid, hertz. Spectra are fitted on this grid, and a shape has unit RMS
-/// on it.
+/// Spacing of the frequency grid, hertz. Models fit spectra on this grid, and the RMS of a shape
+/// over this grid is 1.
 pub const GRID_HZ: f64 = 5.0;
 /// Alignment of the memory that `htex_model_alloc` returns, bytes: enough for every number of the
 /// ABI.
@@ -46,7 +47,8 @@ pub type AbiVersion = extern "C" fn() -> u32;
 /// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`; returns its full length. `[any
 /// thread]`
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Writes the text of the calling thread's last error; returns its full length. `[any thread]`
+/// Writes the error text of the calling thread's last failed call; returns the text's full length.
+/// `[any thread]`
 pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Fits a spectrum. Writes the parameters and the level (RMS, in the asset's unit), and returns the
 /// number of parameters. `[any thread]`
@@ -116,8 +118,8 @@ pub type VoiceFreeFn = extern "C" fn(voice: i64) -> i64;
 pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
 
 /// `htex_model_alloc`, only in WASM modules: allocates `len` bytes, zeroed and aligned to
-/// [`ALLOC_ALIGN`]. Returns null if memory is exhausted or `len` is 0. The host owns the block
-/// until it passes it to `htex_model_free`. `[not while another call is in flight]`
+/// [`ALLOC_ALIGN`]. Returns null if memory is exhausted or `len` is 0. The block belongs to the
+/// host until the host frees it with `htex_model_free`. `[not while another call is in flight]`
 pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
 /// `htex_model_free`, only in WASM modules: frees memory that `htex_model_alloc` returned for the
 /// same `len`. Null is allowed and does nothing. `[not while another call is in flight]`

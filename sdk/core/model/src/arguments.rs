@@ -1,5 +1,5 @@
-//! Checks of the arguments and results of all models. A host also uses them for models that it
-//! calls directly, without C functions.
+//! Checks of the arguments and results of models. The exported C functions make these checks, and
+//! so does a host that calls a model directly, without C functions.
 
 use alloc::vec::Vec;
 

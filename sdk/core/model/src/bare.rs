@@ -1,11 +1,11 @@
-//! Targets without the standard library that are not WASM, such as microcontrollers. There, models
-//! are used through their traits only.
+//! For targets other than WASM that have no standard library, such as microcontrollers. On these
+//! targets, programs call models only through the Rust traits.
 
 use core::cell::RefMut;
 use core::marker::PhantomData;
 
-/// A lock that can never be acquired, because this crate has no lock for such targets. Callers then
-/// compute the value again instead of sharing it.
+/// A lock that can never be acquired, because this crate has no lock for targets without the
+/// standard library. Callers therefore compute the value that the lock would share anew each time.
 pub struct Lock<T>(PhantomData<fn() -> T>);
 
 impl<T> Lock<T> {
@@ -16,12 +16,12 @@ impl<T> Lock<T> {
         Self(PhantomData)
     }
 
-    /// Returns `None`.
+    /// Always returns `None`.
     pub fn lock(&self) -> Option<RefMut<'_, T>> {
         None
     }
 
-    /// Returns `None`.
+    /// Always returns `None`.
     pub fn try_lock(&self) -> Option<RefMut<'_, T>> {
         None
     }

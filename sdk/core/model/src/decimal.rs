@@ -1,6 +1,5 @@
-//! Decimal texts of numbers, without the text formatting of the standard library, which would add
-//! 20 kB to a WASM module. Packages such as `ryu` format exactly, but cannot run at compile time,
-//! which `exact.rs` needs.
+//! Writes numbers as decimal texts. The text formatting of the standard library would add 20 kB to
+//! a WASM module. Packages such as `ryu` cannot run at compile time, as `exact.rs` must.
 
 /// Significant digits of the result of [`rounded`].
 const DIGITS: i32 = 9;

@@ -103,7 +103,8 @@ pub struct Field {
     pub description: String,
 }
 
-/// One option of the fit: a number, or one of several named choices (the number is its index).
+/// One option of the fit. The value of the option is a number or, for an option with named choices,
+/// the index of a choice.
 ///
 /// ```
 /// use htex_model::FitOption;
@@ -147,18 +148,19 @@ pub struct FitOption {
     /// Names of the values 0, 1, …; empty if the option is a plain number.
     #[serde(default)]
     pub choices: Vec<String>,
-    /// Values that a sweep of accuracy against cost (`htex tradeoff`) tries, in all combinations
-    /// with the `sweep` values of the other options. A named choice is given by its index.
+    /// Values of this option that a sweep of accuracy against cost (`htex tradeoff`) tries. The
+    /// sweep tries all combinations of the `sweep` values of all options. For named choices, the
+    /// values are their indices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<f64>,
     /// Values that a sweep tries while all other options have their default values.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep_alone: Vec<f64>,
     /// Name of another option that limits this one. A value of this option above the other option's
-    /// value has no effect, and a sweep skips it.
+    /// value has no effect, and a sweep skips such values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub not_above: Option<String>,
-    /// Effect of the option, and the source of its default value.
+    /// Says what the option does, and where its default value comes from.
     pub description: String,
 }
 

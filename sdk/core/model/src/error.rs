@@ -22,7 +22,7 @@ pub enum Status {
     InvalidOption = -3,
     /// The model cannot describe the spectrum.
     CannotFit = -4,
-    /// There is no such voice, or it was freed.
+    /// No voice has the given handle, e.g. because the voice was freed.
     BadHandle = -5,
     /// The model cannot make more voices.
     TooManyVoices = -6,

@@ -1,8 +1,8 @@
-//! Decimal texts of numbers that parse to exactly the same bits; computed at compile time.
+//! Writes numbers, at compile time, as decimal texts that parse to exactly the same bits.
 //!
-//! The project has its own code for this because no formatter of the standard library or of a
-//! package runs at compile time. A module thus contains a descriptor's text and no code that writes
-//! it.
+//! The project has its own code for these texts because no formatter of the standard library or of
+//! a package runs at compile time. Because the compiler computes the texts, a WASM module contains
+//! the text of its descriptor, but no code that writes such texts.
 
 use crate::decimal::Decimal;
 

@@ -43,7 +43,8 @@ macro_rules! export_model {
     ($model:ty, symbols: $feature:literal) => {
         $crate::export_model!(@model $model, $feature, false);
 
-        /// The C functions of the extension `htex.motion/1`, which the model does not have.
+        /// The C functions of the extension `htex.motion/1`: `None`, because this model does not
+        /// have the extension.
         pub static MOTION: Option<$crate::motion_1::MotionTable> = None;
     };
     ($model:ty, symbols: $feature:literal, extensions: [motion]) => {

@@ -1,8 +1,8 @@
 //! Shared code of models whose voice is white noise through a recursive filter.
 //!
-//! A model implements [`MovingFilter`]. This module then provides its voice, [`FilteredVoice`]. The
-//! voice generates the noise, limits the output to the band, renders blocks of any length, and
-//! changes parameters gradually.
+//! Such a model implements [`MovingFilter`] for its filter, and uses [`FilteredVoice`] as its
+//! voice. This voice generates the noise, limits the output to the band, renders blocks of any
+//! length, and changes parameters gradually.
 
 use alloc::sync::Arc;
 
@@ -26,9 +26,9 @@ const BLOCK: usize = 32;
 /// A group of output samples.
 type GroupSamples = [f32; GROUP];
 
-/// A filter whose coefficients move gradually from one parameter set to the next. Every filter on
-/// the way is stable. All methods except [`new`](Self::new) run on the render thread and must not
-/// allocate.
+/// A filter whose coefficients move gradually from one parameter set to the next. The filter must
+/// be stable after every step. All methods except [`new`](Self::new) run on the render thread and
+/// must not allocate.
 pub trait MovingFilter: Sized + Send + 'static {
     /// Index of the parameter field that contains the filter's sample rate, hertz.
     const RATE_FIELD: usize;
@@ -100,7 +100,7 @@ impl<F: MovingFilter> FilteredVoice<F> {
     /// Makes a voice whose samples have unit RMS.
     ///
     /// # Errors
-    /// If `rate_hz` differs from the sample rate in the parameters, or if [`MovingFilter::new`]
+    /// If `rate_hz` is not the sample rate that the parameters contain, or if [`MovingFilter::new`]
     /// fails.
     pub fn new(
         parameters: &Values<'_>,
@@ -145,7 +145,8 @@ impl<F: MovingFilter> FilteredVoice<F> {
         self.gain
     }
 
-    /// Returns how many samples of the last group the caller has already received.
+    /// Returns how many samples of the last rendered group the voice has already written to the
+    /// caller's blocks.
     pub fn taken(&self) -> usize {
         self.taken
     }
@@ -262,7 +263,7 @@ fn gain(rate_hz: f64, level: f64) -> f64 {
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
 }
 
-/// Checks that magnitudes and samples can be divided by this level.
+/// Checks a filter's level, by which magnitudes and samples are divided.
 ///
 /// # Errors
 /// If the level is not finite, or not above 0.

@@ -1,5 +1,5 @@
-//! The JSON text of a descriptor, generated at compile time. A WASM module thus contains the text,
-//! but no code that writes it.
+//! The JSON text of a descriptor, generated at compile time. So a WASM module contains the JSON
+//! text, but no code that writes JSON.
 
 use crate::decimal::whole;
 use crate::exact::exact;

@@ -1,14 +1,14 @@
 //! The texture model ABI: the traits that a model written in Rust implements, and the C functions
 //! that every model exports.
 //!
-//! A *model* describes a magnitude spectrum by a few parameters. It does five things: it describes
-//! itself, fits parameters to a spectrum, computes the spectrum of given parameters, interpolates
-//! parameters, and makes voices, which render samples. In Rust, the trait [`Model`] has these five
-//! functions, and a voice implements the trait [`Voice`].
+//! A *model* describes a magnitude spectrum by a few parameters. A model has five tasks: it states
+//! its own descriptor, fits parameters to a spectrum, computes the spectrum of given parameters,
+//! interpolates parameters, and makes voices, which render samples. In Rust, a model implements the
+//! trait [`Model`], which covers these five tasks, and a voice implements the trait [`Voice`].
 //!
 //! To write a model in Rust, implement both traits and call [`export_model!`]. The macro generates
-//! the model's table of C functions ([`abi::ModelTable`]). Every host calls a model through this
-//! table, even if the model is built into the host.
+//! the model's table of C functions ([`abi::ModelTable`]). Hosts call native libraries and built-in
+//! models through this table. A WASM module exports the same functions.
 //!
 //! The ABI passes parameters as one flat array of `f64`, in the order of the descriptor's fields. A
 //! scalar is one value; a list is its length followed by its values ([`Values`]). A model's spectra

@@ -9,8 +9,8 @@ pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Value
 }
 
 /// Writes the weighted mean of parameter sets. The lists of all sets must have the same lengths.
-/// Each number of the mean lies within the range of the sets, and a set with weight 1 is copied
-/// unchanged. Does not allocate.
+/// Each number of the mean lies between the smallest and the largest of the corresponding numbers
+/// in the sets. A set with weight 1 is copied unchanged. Does not allocate.
 ///
 /// # Errors
 /// If the sets differ in length.

@@ -1,7 +1,8 @@
 //! What a WASM module needs in place of the standard library: a panic handler and an allocator.
 //!
-//! A module links no standard library, no serializer and no text formatting. `docs/modules.md` has
-//! the reasons, and `tests/tests/it/modules.rs` the size limits.
+//! A module links no standard library, no serializer and no text formatting. `docs/modules.md`
+//! explains the reasons, and `tests/tests/it/modules.rs` checks the sizes of modules against
+//! limits.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::{memory_grow, unreachable};

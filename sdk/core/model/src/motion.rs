@@ -3,7 +3,8 @@
 use crate::motion_1::{MAX_FORCE_N, MAX_POSITION_MM, MAX_SPEED_MM_S};
 use crate::{Error, Voice, text};
 
-/// The motion of a finger at one sample. The speed stays constant until the next motion is set.
+/// The motion of a finger at one sample. From this sample on, the finger keeps its speed until the
+/// host sets another motion.
 ///
 /// ```
 /// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -107,18 +108,18 @@ impl FitCondition {
 /// A voice that receives the motion of the finger through the extension `htex.motion/1`.
 ///
 /// Implement this trait if the sound depends on more than speed and force, e.g. on the finger's
-/// position, on its direction, or on stick-slip. To declare the extension, pass `extensions:
+/// position or direction, or if it imitates stick-slip. To declare the extension, pass `extensions:
 /// [motion]` to [`export_model!`](crate::export_model); the macro then requires that
 /// [`Model::Voice`](crate::Model::Voice) implements this trait.
 ///
 /// # How a host uses it
 ///
 /// For a voice without this trait, the host scales all frequencies with the speed and the level
-/// with the force. For a voice with this trait, the host scales nothing. It only interpolates
-/// parameters between conditions, and calls [`set_motion`](Self::set_motion) before the first
-/// sample, and again before a block when the motion has changed. A host that does not support the
-/// extension never calls `set_motion`. Until the first such call, a voice therefore plays as if the
-/// finger moved as in the recording.
+/// with the force. For a voice with this trait, the host scales nothing. The host only interpolates
+/// parameters between conditions, and calls [`set_motion`](Self::set_motion): once before the first
+/// sample, and again before each block for which the motion has changed. A host that does not
+/// support the extension never calls `set_motion`. Until the first call of `set_motion`, a voice
+/// therefore plays as if the finger moved as in the recording.
 ///
 /// # Example
 ///
@@ -174,8 +175,9 @@ impl FitCondition {
 ///
 /// # Limits
 ///
-/// Samples are finite at every motion within the limits of [`motion_1`](crate::motion_1). At the
-/// motion of the recording the samples have unit RMS; at other motions the model decides the level.
+/// Samples are finite at every motion within the limits of [`motion_1`](crate::motion_1). With the
+/// speed and force of the recording, the samples have unit RMS. At other motions, the model decides
+/// the level.
 pub trait MotionVoice: Voice {
     /// Sets the motion at the next sample. All numbers are in range: the caller has checked them.
     ///

@@ -2,9 +2,9 @@
 //! speed and force of the recording.
 //!
 //! For a model without the extension, the host scales frequencies with the speed and the level with
-//! the force. A model with the extension does both itself. It can also depend on the position, e.g.
-//! for stick-slip, or for a surface that sounds the same at the same place. Native libraries and
-//! WASM modules can both have the extension.
+//! the force. A model with the extension itself scales the frequencies and the level. Its sound can
+//! also depend on the finger's position, e.g. for stick-slip, or for a surface that sounds the same
+//! at the same place. Native libraries and WASM modules can both have the extension.
 
 /// Largest speed of a finger, mm/s, in either direction.
 pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;
@@ -17,8 +17,8 @@ pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
 /// Sets the motion of the finger at a voice's next sample. The arguments are the speed along the
 /// finger's path (mm/s, negative while the position decreases), the normal force (newtons, not
 /// negative), the position along the path, and the two coordinates on the surface (mm; all three
-/// may be negative). The speed stays constant until the next call. Returns a status. If it is
-/// negative, the voice continues unchanged. `[render thread, no allocation; one thread at a time
+/// may be negative). The speed stays constant until the next call. Returns a status. If the status
+/// is negative, the voice continues unchanged. `[render thread, no allocation; one thread at a time
 /// for one voice]`
 pub type MotionSetFn = unsafe extern "C" fn(
     voice: i64,

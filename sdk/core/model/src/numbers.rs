@@ -21,7 +21,7 @@ impl<'a> Numbers<'a> {
         Self { buffer, count: 0 }
     }
 
-    /// Writes a number. If the buffer is full, it only counts the number.
+    /// Writes a number. If the buffer is full, the number is counted but not stored.
     pub fn push(&mut self, number: f64) {
         if let Some(place) = self.buffer.get_mut(self.count) {
             *place = number;
@@ -34,7 +34,8 @@ impl<'a> Numbers<'a> {
         numbers.iter().for_each(|number| self.push(*number));
     }
 
-    /// Returns the number of all values, including values that did not fit into the buffer.
+    /// Returns how many numbers the model wrote, including the numbers that did not fit into the
+    /// buffer.
     pub fn count(&self) -> usize {
         self.count
     }

@@ -28,8 +28,8 @@ mod here {
             Self(Mutex::new(value))
         }
 
-        /// Locks the value. Never returns `None` on this platform. (In a WASM module, `None` means
-        /// that the lock is already held.)
+        /// Locks the value. Never returns `None` on this platform. (In a WASM module, this function
+        /// returns `None` if the lock is already held.)
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
         }

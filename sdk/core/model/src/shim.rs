@@ -2,7 +2,7 @@
 //! errors.
 //!
 //! The functions that [`export_model!`](crate::export_model) generates call this layer. Hosts also
-//! call it, for models that are Rust objects without C functions.
+//! call functions of this layer, for models that are Rust objects without C functions.
 
 use alloc::alloc::Layout;
 use core::marker::PhantomData;
@@ -36,7 +36,7 @@ impl<'a, T> Input<'a, T> {
     /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
-    /// `pointer` is null, or `len` values can be read there for `'a`.
+    /// `pointer` is null, or `len` values can be read at `pointer` for `'a`.
     pub unsafe fn new(pointer: *const T, len: usize) -> Self {
         // C callers may pass null for an empty array, but a slice must not be null.
         if len == 0 {
@@ -67,8 +67,8 @@ impl<'a, T> Output<'a, T> {
     /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
-    /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive
-    /// access.
+    /// `pointer` is null, or it points to `len` initialised values that can be written for `'a`,
+    /// with exclusive access.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
         if len == 0 {
             return Self(Some(&mut []));
@@ -349,14 +349,16 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
     with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
-/// See [`crate::abi::ExtensionFn`]. `motion` says whether the model has `htex.motion/1`.
+/// See [`crate::abi::ExtensionFn`]. `motion` is true if the model has the extension
+/// `htex.motion/1`.
 pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
     let is = |known: &str| id.0 == Some(known.as_bytes());
     let voices = is(VoicesTable::ID) && !cfg!(target_family = "wasm");
     i64::from(voices || motion && is(MotionTable::ID))
 }
 
-/// Runs a call. On an error or a panic, stores the last-error text and returns the status.
+/// Runs a call and returns its result. If the call returns an error or panics, stores the error
+/// text for `htex_model_last_error` and returns the status.
 pub fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
     caught(call).unwrap_or_else(failed)
 }

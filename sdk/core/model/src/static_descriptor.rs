@@ -26,7 +26,8 @@ pub struct StaticDescriptor {
     pub fields: &'static [StaticField],
     /// Fit options, in the order in which a fit receives their values.
     pub options: &'static [StaticOption],
-    /// Whether the parameters determine the level of a fit. If so, hosts leave the level unchanged.
+    /// Whether the parameters determine the level of a fit. If true, hosts store the fitted level
+    /// unchanged.
     pub keeps_level: bool,
     /// Whether hosts use the model only if the user names it. If false, hosts also fit this model
     /// when the user names no model.
@@ -48,8 +49,8 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value of the field for assets that an earlier minor version of the model wrote without it.
-    /// Only for scalars.
+    /// Value of the field for assets of an earlier minor version of the model that did not have the
+    /// field. Only for scalars.
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
     pub usual: Option<UsualRange>,
@@ -57,7 +58,8 @@ pub struct StaticField {
     pub description: &'static str,
 }
 
-/// One fit option: a number, or one of several named choices (the number is the choice's index).
+/// One fit option. The value of the option is a number or, for an option with named choices, the
+/// index of a choice.
 #[derive(Debug, Clone, Copy)]
 pub struct StaticOption {
     /// Name of the option on the command line.
@@ -74,15 +76,16 @@ pub struct StaticOption {
     pub integer: bool,
     /// Names of the choices 0, 1, …; empty if the option is a plain number.
     pub choices: &'static [&'static str],
-    /// Values that a sweep of accuracy against cost (`htex tradeoff`) tries, in all combinations
-    /// with the `sweep` values of the other options. A named choice is given by its index.
+    /// Values of this option that a sweep of accuracy against cost (`htex tradeoff`) tries. The
+    /// sweep tries all combinations of the `sweep` values of all options. For named choices, the
+    /// values are their indices.
     pub sweep: &'static [f64],
     /// Values that a sweep tries while all other options have their default values.
     pub sweep_alone: &'static [f64],
     /// Name of another option that limits this one. A value of this option above the other option's
-    /// value has no effect, and a sweep skips it.
+    /// value has no effect, and a sweep skips such values.
     pub not_above: Option<&'static str>,
-    /// Effect of the option, and the source of its default.
+    /// Says what the option does, and where its default value comes from.
     pub description: &'static str,
 }
 
@@ -225,14 +228,14 @@ impl StaticOption {
     }
 
     /// Sets the values that a sweep of accuracy against cost (`htex tradeoff`) tries, from coarse
-    /// to fine. The sweep combines them with all values of the other options. A named choice is
-    /// given by its index. If no option of a model has such values, the sweep covers the ranges of
-    /// all options.
+    /// to fine. The sweep tries all combinations of these values with the sweep values of the other
+    /// options. For named choices, the values are their indices. If a model has no option with
+    /// sweep values, the sweep covers the ranges of all options.
     pub const fn sweep(self, values: &'static [f64]) -> Self {
         Self { sweep: values, ..self }
     }
 
-    /// Sets the values that a sweep tries with all other options at their defaults.
+    /// Sets the values that a sweep tries while all other options have their default values.
     pub const fn sweep_alone(self, values: &'static [f64]) -> Self {
         Self { sweep_alone: values, ..self }
     }

@@ -1,6 +1,6 @@
 //! The kind of a field, and its encoding in files.
 
-/// One number, or a list of them.
+/// The kind of a field: one number, or a list of numbers.
 ///
 /// ```
 /// use htex_model::{Kind, StaticField};
@@ -23,8 +23,8 @@ pub enum Kind {
     },
 }
 
-/// Encoding of a field's values in a file. The integer encodings store a whole number `q` for the
-/// value `offset + scale·q`, or `exp(offset + scale·q)` if `log` is set.
+/// Encoding of a field's values in a file. The integer encodings store whole numbers `q`. The value
+/// that belongs to `q` is `offset + scale·q`, or `exp(offset + scale·q)` if `log` is set.
 ///
 /// ```
 /// use htex_model::{StaticField, Store};
@@ -72,7 +72,8 @@ pub enum Store {
         #[cfg_attr(feature = "host", serde(default))]
         log: bool,
     },
-    /// Unsigned 8-bit steps of a list, packed by their differences.
+    /// A list of unsigned 8-bit integers, stored as the differences between neighbours. Small
+    /// differences take fewer bits.
     Packed {
         /// Size of one step: the factor of the stored integer. If `log` is set, it is a step of the
         /// value's natural logarithm.

@@ -1,5 +1,5 @@
-//! Error texts, built without the text formatting of the standard library, which is larger than a
-//! small WASM module.
+//! Builds error texts without the text formatting of the standard library. That formatting has more
+//! code than a small WASM module.
 
 use alloc::string::String;
 
@@ -40,7 +40,8 @@ impl From<f64> for TextPart<'_> {
     }
 }
 
-/// Concatenates the parts. The macro [`text!`](crate::text!) is shorter to write.
+/// Concatenates the parts to one text. The macro [`text!`](crate::text!) calls this function, and
+/// is shorter to write.
 #[cold]
 pub fn concat(parts: &[TextPart<'_>]) -> String {
     let mut text = String::new();

@@ -17,16 +17,16 @@ pub struct FitInput<'a> {
     pub frequency_hz: &'a [f64],
     /// Magnitude at each frequency, in the unit of the asset's quantity; finite and not negative.
     pub magnitude: &'a [f64],
-    /// The segments of the recording, joined by overlap-add to one band-limited signal, in the unit
-    /// of `magnitude`. May be empty.
+    /// The recorded signal, band-limited, in the unit of `magnitude`. The segments of the recording
+    /// are joined to one signal by overlap-add. May be empty.
     pub signal: &'a [f64],
     /// Sample rate of `signal`, hertz.
     pub signal_rate_hz: f64,
-    /// The value of each fit option, in the descriptor's order. Every value is in its option's
-    /// range.
+    /// The value of each fit option, in the descriptor's order. Every value lies in the range of
+    /// its option.
     pub options: &'a [f64],
     /// Speed and force of the recording. Both are unknown if the model does not have the extension
-    /// `htex.motion/1`, or if the host does not know them.
+    /// `htex.motion/1`. Each can also be unknown to the host.
     pub condition: FitCondition,
 }
 
@@ -62,7 +62,7 @@ pub struct Fit {
 ///
 /// # How a host uses a model
 ///
-/// All methods are pure functions: they have no `self`, and the result depends only on the
+/// All methods are pure functions: they have no `self`, and their results depend only on their
 /// arguments. A host calls them in these situations:
 ///
 /// * **Authoring.** The host calls [`fit`](Self::fit) once for each recorded condition (speed and
@@ -70,23 +70,24 @@ pub struct Fit {
 /// * **Plots and error measures.** The host calls [`magnitude`](Self::magnitude), which computes
 ///   the spectrum without rendering.
 /// * **Opening a voice.** The host calls [`voice_rate_hz`](Self::voice_rate_hz) and then
-///   [`voice`](Self::voice), with the rate that the first call returned. It resamples the voice's
-///   output to its own sample rate, and multiplies it by the level.
+///   [`voice`](Self::voice), with the rate that the first call returned. The host resamples the
+///   voice's output to the host's sample rate, and multiplies it by the level.
 /// * **Following a finger.** The host calls [`interpolate`](Self::interpolate) to get parameters
 ///   between two recorded conditions, and passes them to [`Voice::retune`].
 ///
-/// The functions that the macro generates check every argument before they call these methods:
+/// The functions that the macro generates check every argument before they call these methods. So
 /// parameters and options are in the ranges of the descriptor, bands are valid, rates are from 1 Hz
-/// to 10 MHz, weights are from 0 to 1 and sum to one. An implementation does not repeat these
+/// to 10 MHz, and weights are from 0 to 1 and sum to one. An implementation need not repeat these
 /// checks. A panic becomes the status [`Panicked`](crate::Status::Panicked) in a native library,
 /// and ends the instance of a WASM module.
 ///
 /// # Threads
 ///
 /// A host may call all methods from any thread and from several threads at the same time. A host
-/// may call [`interpolate`](Self::interpolate) on the render thread, so it must not allocate or
-/// wait. A host never calls [`fit`](Self::fit), [`magnitude`](Self::magnitude) or
-/// [`voice`](Self::voice) on the render thread, so they may allocate and may be slow.
+/// may call [`interpolate`](Self::interpolate) on the render thread, so this method must not
+/// allocate or wait. A host never calls [`fit`](Self::fit), [`magnitude`](Self::magnitude) or
+/// [`voice`](Self::voice) on the render thread, so these three methods may allocate and may be
+/// slow.
 ///
 /// # Example
 ///
@@ -222,8 +223,9 @@ pub struct Fit {
 /// # Known doubts
 ///
 /// * At steep flanks of the spectrum, the sound and [`magnitude`](Self::magnitude) can differ by
-///   one bin (5 Hz). The window function of the measurement blurs such flanks. A model may choose
-///   whether its voice plays the blurred spectrum or the spectrum before the blur.
+///   one bin (5 Hz). The reason is that the window function blurs steep flanks when a spectrum is
+///   measured. A model may choose whether its voice plays the blurred spectrum or the spectrum
+///   before the blur.
 /// * A host may replace [`Fit::level_rms`], e.g. by the RMS of the recording. A model whose
 ///   parameters determine the level declares [`StaticDescriptor::keeping_level`], and hosts then
 ///   leave the level unchanged.
@@ -288,9 +290,9 @@ pub trait Model: 'static {
 
 /// An endless stream of samples of one texture, made by [`Model::voice`].
 ///
-/// The host renders block after block on its render thread, and between two blocks it may change
-/// the parameters. It never makes two calls for the same voice at the same time, but a voice may
-/// move to another thread. Several voices of one model may render at the same time, on different
+/// The host renders block after block on its render thread, and may change the parameters between
+/// two blocks. The host never makes two calls for the same voice at the same time, but may move a
+/// voice to another thread. Several voices of one model may render at the same time, on different
 /// threads.
 ///
 /// # What a voice guarantees

@@ -13,10 +13,11 @@ pub enum Scale {
     Log,
 }
 
-/// The usual range of a parameter, for sliders. For a list, it applies to each of its numbers.
+/// The usual range of a parameter, for sliders. The range of a list field applies to each number of
+/// the list.
 ///
-/// A field's own range contains every value that can be stored. It is much wider than a slider
-/// needs, e.g. 0.001 to 1,000,000 for a shape parameter of sBeta.
+/// A field's own range contains every value that can be stored. This range is much wider than a
+/// slider needs, e.g. 0.001 to 1,000,000 for a shape parameter of sBeta.
 ///
 /// ```
 /// use htex_model::{StaticField, UsualRange};

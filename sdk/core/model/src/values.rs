@@ -37,7 +37,7 @@ pub struct Range<'a> {
     pub name: &'a str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'a str,
-    /// Whether the field is one number or a list of numbers. An option is one number.
+    /// Whether the field is one number or a list of numbers. An option is always one number.
     pub kind: Kind,
     /// Smallest value allowed.
     pub min: f64,
@@ -90,7 +90,7 @@ fields_of!(StaticDescriptor);
 #[cfg(feature = "host")]
 fields_of!(crate::Descriptor);
 
-/// A parameter set that was checked against a descriptor. It borrows the flat array.
+/// A parameter set that was checked against a descriptor. This type borrows the set's flat array.
 ///
 /// ```
 /// use htex_model::{StaticDescriptor, StaticField, Values};
@@ -119,7 +119,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// If a field is missing, too long, out of range or not finite, or if numbers follow the last
-    /// field. The message names the field, or says how many numbers follow.
+    /// field. The error message names the field, or states how many numbers follow the last field.
     pub fn read(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
@@ -177,8 +177,8 @@ impl<'a> Values<'a> {
         Ok((Self { flat, spans }, at))
     }
 
-    /// Returns the numbers of field `i`; for a scalar field, this is one number. Returns an empty
-    /// slice if there is no field `i`.
+    /// Returns the numbers of field `i`, or the one number if it is a scalar field. Returns an
+    /// empty slice if there is no field `i`.
     pub fn list(&self, i: usize) -> &'a [f64] {
         let (start, end) = self.spans.get(i).copied().unwrap_or_default();
         &self.flat[start as usize..end as usize]

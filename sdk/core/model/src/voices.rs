@@ -1,6 +1,6 @@
 //! The voices of one exported model, found by their handles.
 //!
-//! The lookup takes no lock. It refuses the handle of a voice that was freed.
+//! Looking up a voice takes no lock. A handle becomes invalid when its voice is freed.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;

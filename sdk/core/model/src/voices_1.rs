@@ -2,16 +2,16 @@
 //!
 //! In a recursive filter, each sample of a voice depends on the sample before it. Samples of
 //! different voices are independent, so a processor can compute them in parallel. A native library
-//! exports `htex_voices_1_render`. WASM modules do not have this extension, because each of their
-//! voices has its own instance.
+//! with this extension exports `htex_voices_1_render`. WASM modules do not have this extension,
+//! because each of their voices has its own instance.
 
 /// Largest number of voices in one call.
 pub const MAX_VOICES: usize = 16;
 
 /// Renders the next `frames` samples of each of `count` different voices, one voice after another.
 /// The samples must be bit-identical to the samples of `htex_model_voice_render`. Returns a status.
-/// If it is negative, and not [`Panicked`](crate::Status::Panicked), no voice has advanced.
-/// `[render thread, no allocation; one thread at a time for one voice]`
+/// If the status is negative, and is not [`Panicked`](crate::Status::Panicked), no voice has
+/// advanced. `[render thread, no allocation; one thread at a time for one voice]`
 pub type VoicesRenderFn =
     unsafe extern "C" fn(voices: *const i64, count: usize, out: *mut f32, frames: usize) -> i64;
 

@@ -3,12 +3,13 @@
 //!
 //! The rules are the same as for the engine of the feature `wasm`: a module imports nothing, its
 //! memory and tables are limited, each voice has a separate instance, and an instance that trapped
-//! is not called again. But this engine cannot interrupt a call. A call that took longer than its
-//! limit returns an error afterwards. An endless loop ends only when the worker that runs it is
-//! stopped (`sdk/bindings/web/src/guarded.js`).
+//! is not called again. But the engine of a browser cannot interrupt a call. A call that takes
+//! longer than its limit runs to its end, and then returns an error. An endless loop in a module
+//! ends only when the page stops the worker that runs the module
+//! (`sdk/bindings/web/src/guarded.js`).
 //!
-//! This module contains only the engine. It shares the loader with `wasm` (`calls.rs`, `model.rs`,
-//! `voice.rs`).
+//! This Rust module contains only the browser's engine. The loader is the code of `wasm`
+//! (`calls.rs`, `model.rs`, `voice.rs`).
 
 #[path = "../wasm/allowance.rs"]
 mod allowance;

@@ -1,4 +1,4 @@
-//! Converts the arguments and results of functions to 64-bit numbers with their types.
+//! Converts the typed arguments and results of a module's functions to and from 64-bit numbers.
 
 use std::marker::PhantomData;
 

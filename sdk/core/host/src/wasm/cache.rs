@@ -1,12 +1,13 @@
 //! Compiled modules on disk.
 //!
-//! The name of a file contains the hashes of the module and of the engine. The file begins with a
-//! keyed hash of its name and its content, which detects damaged files and files of other users.
-//! [`WasmCache`] describes how the cache is protected.
+//! The name of a file in the cache contains the hashes of the module and of the engine. Each file
+//! begins with a keyed hash of its name and its content. By this hash, the program recognises
+//! damaged files and files that another user wrote. [`WasmCache`] describes how the cache is
+//! protected.
 //!
-//! The program runs these files as machine code. Therefore it does not use a folder that belongs to
-//! another user or to which other users may write. If a file has no tag made with this user's key
-//! ([`Key`]), the program compiles the module again.
+//! The program runs the cached files as machine code. Therefore the program does not use a folder
+//! that belongs to another user or to which other users may write. If a file has no tag made with
+//! this user's key ([`Key`]), the program compiles the module again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;

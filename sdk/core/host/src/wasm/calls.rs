@@ -1,5 +1,5 @@
-//! The calls of the model ABI on an instance. They copy arguments into the instance's buffer and
-//! results out of it.
+//! The calls of the model ABI on an instance of a module. Each call copies the arguments into the
+//! instance's buffer, and copies the results out of this buffer.
 
 use htex_model::{Band, FitInput, Motion};
 

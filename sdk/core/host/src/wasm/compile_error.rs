@@ -25,7 +25,7 @@ pub(super) enum CompileError {
     TooSlow { ms: u128, allowed_ms: u128 },
     #[error(transparent)]
     Budget(#[from] BudgetError),
-    /// An error of the engine, here or in the compiler process.
+    /// An error of the engine, in this process or in the process that compiles.
     #[error("{what}")]
     Engine { what: String },
     #[error("cannot start the clock that interrupts modules: {what}")]

@@ -1,10 +1,11 @@
 //! The engine that compiles and runs modules, and the clock that interrupts them.
 //!
-//! Time limits use wasmtime's epochs: a thread increments a counter, with the default limits at
-//! most 20 times per second, and stops a call at its deadline. This also stops endless loops. The
-//! engine can also count instructions (`fuel`), which gives the same result on every machine. A
-//! memory limit costs no time while a module runs: the engine reserves addresses, so it need not
-//! compare each access with a bound.
+//! Time limits use wasmtime's epochs: a thread increments a counter (20 times per second with the
+//! default limits), and wasmtime stops a call when the counter reaches the call's deadline. So the
+//! time limit also stops endless loops. The engine can also count instructions (`fuel`). A limit of
+//! instructions stops the same calls on every machine. With [`WasmEngine::Signals`], a memory limit
+//! costs no time while a module runs: the engine reserves addresses, so it need not compare each
+//! access with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -34,8 +35,9 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits until the clock threads of engines without modules have ended, at most 50 ms for each
-/// thread. A program must call this function before it unloads this code.
+/// Waits until the clock threads of all engines that have no modules left have ended, at most 50 ms
+/// for each thread. If this code is in a plugin, the program must call this function before it
+/// unloads the plugin.
 pub fn end_wasm_clocks() {
     // Taken out, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));

@@ -1,14 +1,15 @@
-//! An upper bound of the time for compiling a module, computed before compilation.
+//! Estimates the time for compiling a module before compilation. The estimate is an upper bound.
 //!
-//! The compiler's time and memory can grow faster than the module: with the number of operators in
-//! one function, with values that are live across branches or merge where blocks end, and with
-//! nested blocks. The estimate is a sum with one term for each of these causes. For all modules
-//! with which it was compared, the sum was above the measured time, and at most three times as
-//! large.
+//! The compiler's time and memory can grow faster than the size of the module, for three reasons:
+//! many operators in one function, values that are live across branches or merge where blocks end,
+//! and nested blocks. The estimate is a sum with one term for each of these reasons. For all
+//! modules of a comparison with measured times, the sum was above the measured time, and at most
+//! three times as large.
 //!
 //! If the estimate of a module exceeds the limit, the host compiles the module without optimisation
 //! and with a single-pass register allocator ([`super::engine::Effort::Quick`]), which takes nearly
-//! linear time. If the estimate for this also exceeds the limit, the host refuses the module.
+//! linear time. If the estimate for this quick compilation also exceeds the limit, the host refuses
+//! the module.
 
 use wasmparser::{
     BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,

@@ -1,5 +1,6 @@
 //! One instance of a module: its functions, and a buffer in its memory for arguments and results.
-//! Both engines share this code. The module `guest` contains the code that differs.
+//! Both engines share this code. The module `guest` contains the code that differs between the
+//! engines.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Compilation in a separate process. The host stops the process if it exceeds its limits.
+//! Compilation in a separate process. The host stops this process if compilation exceeds the limits
+//! of time or memory.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -64,9 +65,9 @@ pub(super) fn compile(
 }
 
 /// Compiles the module on standard input and writes the result to standard output. A host starts
-/// the program of [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments of that
-/// variant, followed by further arguments; `arguments` are these further arguments. On Unix, the
-/// process first limits its memory and its processor time.
+/// the program that [`WasmCompiler::Program`](crate::WasmCompiler) names, with the arguments of
+/// that variant and with its own arguments after them. `arguments` contains only the host's own
+/// arguments. On Unix, the process first limits its memory and its processor time.
 ///
 /// ```no_run
 /// let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -1,3 +1,3 @@
-//! Typed functions, under the names that both engines use for them.
+//! Types for the typed functions of a module, under the names that both engines use.
 
 pub(super) use wasmtime::{TypedFunc, WasmParams as Parameters, WasmResults as Returned};

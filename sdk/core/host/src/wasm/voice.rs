@@ -1,7 +1,7 @@
 //! A voice in a separate instance. The instance is not called again after a trap.
 //!
-//! The host copies arguments into a buffer in the module's memory, which is allocated once for each
-//! voice, and copies samples out of it once for each call.
+//! Each voice has a buffer in the module's memory, which is allocated once. The host copies
+//! arguments into this buffer and, in each call, copies the rendered samples out of it.
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Models that describe a spectrum by a curve and play it as noise.
 //!
-//! Every type that implements [`ShapedModel`], with a type that implements [`Curve`], is also a
-//! [`Model`]. This module derives the magnitude at unit RMS, the sample rate and the voice
-//! ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
+//! Every type that implements [`ShapedModel`] also implements [`Model`]. It names a type that
+//! implements [`Curve`]. This module derives the magnitude at unit RMS, the sample rate and the
+//! voice ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
 mod places;
 
 use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
@@ -177,9 +177,10 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 /// A magnitude curve that a model's parameters define.
 ///
 /// Implement this trait and [`ShapedModel`] for a model that plays random-phase noise with the
-/// spectrum of the curve. A model that processes the noise further implements [`Model`] itself. Its
-/// voice then contains a [`ShapedVoice`], and its methods `magnitude` and `voice_rate_hz` call the
-/// functions [`magnitude`] and [`voice_rate_hz`] of this module.
+/// spectrum of the curve. A model that also processes the noise, e.g. with a filter, implements
+/// [`Model`] instead of [`ShapedModel`]. The voice of such a model contains a [`ShapedVoice`], and
+/// the model's methods `magnitude` and `voice_rate_hz` call the functions [`magnitude`] and
+/// [`voice_rate_hz`] of this module.
 ///
 /// # How it is used
 ///
@@ -192,14 +193,14 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 ///   at once, or at the end of a cross-fade (10 ms) if one is in progress. `set` and `fill` run on
 ///   the render thread and must not allocate.
 ///
-/// The scale of `magnitude_at` and `fill` does not matter, and they may have different scales: the voice
-/// always normalises to unit RMS in the band.
+/// `magnitude_at` and `fill` may return values in any scale, and their scales may differ, because
+/// the voice normalises its samples to unit RMS in the band.
 ///
 /// # Known doubt
 ///
-/// When a retune arrives during the cross-fade of an earlier one, the voice accepts the parameters
-/// before it knows whether [`fill`](Self::fill) will write a valid spectrum. If `fill` then writes
-/// no power, the old spectrum continues without an error. Detect invalid parameters in
+/// If a host retunes a voice during the cross-fade of an earlier retune, the voice accepts the new
+/// parameters before it knows whether [`fill`](Self::fill) will write a valid spectrum. If `fill`
+/// then writes no power, the old spectrum continues without an error. Detect invalid parameters in
 /// [`set`](Self::set) if that is cheap.
 pub trait Curve: Sized + Send + 'static {
     /// Makes the curve of these parameters in a band. It may allocate, but not if the type keeps

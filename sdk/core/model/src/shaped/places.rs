@@ -7,8 +7,8 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
 
-/// Positions of a voice's frequencies between the bins of a band's grid. Voices with the same rate
-/// and band share them.
+/// A table with the positions of a voice's frequencies between the bins of a band's grid. Voices
+/// with the same rate and band share one table.
 pub struct Places(Vec<BinPosition>);
 
 /// Position between two neighbouring bins: the lower bin, and the fraction of the way to the next
@@ -19,8 +19,8 @@ struct BinPosition {
 }
 
 impl Places {
-    /// Returns the positions of these frequencies, hertz. `key` identifies the frequencies, so that
-    /// voices with the same frequencies share one table.
+    /// Returns the positions of these frequencies, hertz. `key` identifies the list of frequencies:
+    /// calls with the same key return the same table.
     pub fn shared(frequency_hz: &[f64], key: ComponentsKey, band: Band) -> Arc<Self> {
         static PLACES: Shared<ComponentsKey, Places> = Shared::new();
         PLACES.get(key, || Arc::new(Self::new(frequency_hz, band)))

@@ -11,8 +11,9 @@ use crate::response::Channel;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabError {
-    /// A file could not be read or written, or its contents cannot be used: a calibration matrix, a
-    /// part file, the JSON next to a recording, a recording of what was felt, an asset.
+    /// A file could not be read or written, or its contents cannot be used. The file is a
+    /// calibration matrix, a part file, the JSON next to a recording, a recording of felt forces,
+    /// or an asset.
     #[error(transparent)]
     File(#[from] htex_base::files::FileError),
     /// Another program is writing to this file.
@@ -36,7 +37,7 @@ pub enum LabError {
     /// The source or a tracker failed.
     #[error(transparent)]
     Source(#[from] htex_device::DeviceError),
-    /// The channels do not fit the map, or a recording cannot be read.
+    /// The channels of the source do not fit the column map, or a recording cannot be read.
     #[error(transparent)]
     Read(#[from] htex_author::recording::ReadError),
     /// The source ended before the take was complete.
@@ -64,7 +65,7 @@ pub enum LabError {
         /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
-    /// No take kept to its target.
+    /// None of the takes that were tried kept to its target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
         attempts: u32,
@@ -83,7 +84,7 @@ pub enum LabError {
         /// Time since the source was started, seconds.
         at_s: f64,
     },
-    /// There is a target for a speed or a force, but no signal that measures it.
+    /// There is a target for the speed or the force, but no signal measures this quantity.
     #[error("a target {what} is given, but the {what} is not measured; {advice}")]
     NotMeasured {
         /// `speed` or `force`.
@@ -114,8 +115,8 @@ pub enum LabError {
         line: usize,
         problem: String,
     },
-    /// The file of answers belongs to another version of the study. Results of two versions must
-    /// not be mixed.
+    /// The file of answers belongs to another version of the study. A file must not mix the results
+    /// of two versions.
     #[error(
         "{}: the answers there were begun with another version: {changed}. Restore what was there (the earlier settings, in the case of a \
          device), or start anew in another folder (-o)",
@@ -129,7 +130,8 @@ pub enum LabError {
     /// A folder has no answers.
     #[error("{}: there are no answers (*.jsonl); name the folder that `htex study run -o` wrote to", .folder.display())]
     NoAnswers { folder: PathBuf },
-    /// A simulated participant needs the measured error of each representation.
+    /// An asset has no measured error for a model, so a simulated participant cannot rate the
+    /// model.
     #[error(
         "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
     )]
@@ -165,8 +167,8 @@ pub enum LabError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// No column map can be made from input and output: they name the same column, or the further
-    /// roles include an axis.
+    /// The columns of input and output cannot be used: both name the same column, or the map of
+    /// further roles contains an axis.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.
@@ -266,7 +268,7 @@ pub enum LabError {
         /// The hits or windows that were thrown out, each with its place and the reason.
         reasons: Vec<String>,
     },
-    /// The response cannot be written to a file that `htex` can read.
+    /// A magnitude of the response is outside the range that a response file may contain.
     #[error(
         "the magnitude {magnitude} at {frequency_hz} Hz is beyond 1e-9 to 1e9, which responses are limited to; scale the input or the output to another unit"
     )]
@@ -291,7 +293,7 @@ impl LabError {
         )
     }
 
-    /// Returns the settings that would help.
+    /// Returns the settings whose change may remove the error.
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
             Self::Columns { .. } | Self::Constant { .. } => &["input", "output"],
@@ -306,7 +308,7 @@ impl LabError {
         Self::Busy { file: file.to_owned(), doing }
     }
 
-    /// Converts an error to one that states that felt forces could not be recorded.
+    /// Converts an error of a recording of felt forces to [`LabError::Felt`].
     pub fn felt(error: impl Into<Self>) -> Self {
         Self::Felt(Box::new(error.into()))
     }

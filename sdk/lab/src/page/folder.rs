@@ -1,23 +1,23 @@
 //! Serves a folder of files, such as the studio, to browsers on this machine only.
 //!
-//! All files are read at the start, so that no request can name a file on disk. Links are refused,
-//! because the folder may come from somebody else, and its scripts could read the files to which
-//! the links lead.
+//! The server reads all files of the folder when it starts, so no request can name a file on disk.
+//! The server refuses folders that contain links. Such a folder may come from another person, whose
+//! scripts could read the files to which the links point.
 //!
-//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, and only
-//! this user can read the key. A browser keeps service workers and stored data separately for each
-//! name. So no other program can leave a script at this address, and a page of one folder cannot
-//! read what a page of another folder stored. A folder always gets the same name. Requests to any
-//! other name, including `127.0.0.1`, are refused.
+//! The address is `http://NAME.localhost:PORT/`. NAME is a keyed hash of the folder, and only this
+//! user can read the key. A browser keeps service workers and stored data separately for each name.
+//! So other programs cannot leave a script at this address, and a page of one folder cannot read
+//! what a page of another folder stored. The same folder always gets the same name. The server
+//! refuses requests to any other host name, including `127.0.0.1`.
 //!
-//! A page must not navigate its tab to another address, because its scripts could thereby send away
-//! files that a user drops on the page. No header can forbid this: browsers never had
-//! `navigate-to`, and a sandbox without `allow-top-navigation` restricts only frames. So each page
-//! begins with `stay.js`, which uses the Navigation API to cancel every navigation to another
-//! origin. This has no effect in a browser without that API (`'navigation' in window` is false).
-//! Service workers are refused, because they could answer with a page of their own. Scripts can
-//! still send data in two ways: by names that a browser looks up ahead of time (`dns-prefetch`),
-//! and by WebRTC.
+//! A page must not navigate its tab to another origin, because a script could put the contents of
+//! files that the user drops on the page into the new address. No header can forbid navigation:
+//! browsers never supported `navigate-to`, and a sandbox without `allow-top-navigation` restricts
+//! only frames. So each page begins with `stay.js`, which uses the Navigation API to cancel every
+//! navigation to another origin. `stay.js` has no effect in a browser without that API
+//! (`'navigation' in window` is false). The server refuses scripts of service workers, because a
+//! service worker could answer with another page. Two ways to send data remain open to scripts:
+//! host names that a browser looks up ahead of time (`dns-prefetch`), and WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -77,11 +77,11 @@ pub struct ServedFolder {
 
 impl ServedFolder {
     /// Serves a folder's files on this machine. Port 0 means any free port. `key` is the user's
-    /// key; with the same key, the folder always has the same address.
+    /// key. A folder has the same host name each time it is served with the same key.
     ///
     /// # Errors
-    /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the
-    /// port is taken.
+    /// If the folder has no `index.html`, if one of its files is a link, cannot be read or is too
+    /// large, or if the port is taken.
     pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, LabError> {
         let mut files = BTreeMap::new();
         read(&OwnFolder::new(folder), "", 0, &mut files)?;

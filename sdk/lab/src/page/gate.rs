@@ -1,4 +1,5 @@
-//! Checks requests, and tracks which tab owns the page. The checks use only the head of a request.
+//! Checks requests, and tracks which tab owns the page. The checks read the head of a request, but
+//! not its body.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -23,7 +24,7 @@ pub(super) struct Gate {
 pub(super) enum PageRequest {
     /// The page itself.
     Page,
-    /// A named request.
+    /// A request with a name, such as the state of the session.
     Request(String),
 }
 

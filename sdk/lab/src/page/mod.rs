@@ -1,10 +1,10 @@
 //! Serves a session's page from this machine to a single browser tab.
 //!
-//! The address contains a random token. Requests with another host name or origin are refused
-//! before they are read. So other pages in the browser and other users of the machine can neither
-//! see nor answer requests, nor delay them. One tab owns the page until it is closed or silent for
-//! 8 s; other tabs are refused. Any tab can stop the session at any time, with a button or with
-//! Escape.
+//! The address contains a random token. The server refuses requests with another host name or
+//! origin before it reads their bodies. So neither other pages in the browser nor other users of
+//! the machine can see, answer or delay the requests of the session's page. One tab owns the page
+//! until it is closed or silent for 8 s; other tabs are refused. Any tab can stop the session at
+//! any time, with a button or with Escape.
 
 mod folder;
 mod gate;

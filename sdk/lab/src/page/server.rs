@@ -1,10 +1,10 @@
 //! The server of a page. It listens only on 127.0.0.1.
 //!
-//! Any program on this machine may connect, but it cannot delay the owner of the page. `hyper` runs
-//! in its own runtime with one thread, and passes a request on before its body arrives. The gate
-//! checks the head. Only then is the body read, up to 4096 bytes. Head and body each have a
-//! deadline of one second. At most 64 connections are open. A new connection replaces the oldest
-//! one that has not passed the gate.
+//! Any program on this machine may connect, but other programs cannot delay the tab that owns the
+//! page. `hyper` runs in a separate runtime with one thread, and passes a request on before the
+//! request's body arrives. The gate checks the head of the request. The server then reads the body,
+//! up to 4096 bytes. Head and body each have a deadline of one second. At most 64 connections are
+//! open. A new connection replaces the oldest connection that has not passed the gate.
 //!
 //! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
 //! read a body before the gate could refuse it, has no deadlines, and uses a thread for each

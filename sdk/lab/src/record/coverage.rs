@@ -1,9 +1,10 @@
 //! Measures how much of a take is usable: the share of time during which the finger slides on its
 //! target, and the number of sweeps.
 //!
-//! A take's spectrum uses only the middles of its sweeps. The finger may be on target there, but
-//! lifted for the rest of the time. For example, a finger that was lifted after 3.2 s of 10 s left
-//! three sweeps whose middles kept to the target.
+//! A sweep is one stroke of the finger over the surface. The spectrum of a take uses only the
+//! middles of its sweeps. In these middles the finger may be on target, although it is lifted for
+//! most of the take. For example, a finger was lifted after 3.2 s of a take of 10 s; the middles of
+//! its three sweeps kept to the target.
 
 use htex_author::recording::Sums;
 use htex_author::{Recording, Segments, sliding};
@@ -27,26 +28,26 @@ const ROUNDING: f64 = 1e-9;
 #[schemars(deny_unknown_fields)]
 pub struct Requirements {
     /// Smallest share of the take in which the finger slides on its target, 0 to 1
-    /// ([`Coverage::on_target`]). 0 requires nothing.
+    /// ([`Coverage::on_target`]). With 0, there is no requirement.
     #[schemars(range(min = 0, max = 1))]
     pub on_target: f64,
-    /// Smallest number of complete sweeps. 0 requires none.
+    /// Smallest number of complete sweeps. With 0, there is no requirement.
     pub sweeps: u32,
 }
 
 impl Requirements {
     /// No requirements.
     pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
-    /// Required share if the user gives none. It was chosen with simulated takes of 10 s with
-    /// strokes of 83 mm, on five surfaces with four seeds each. Complete takes had shares of 0.65
-    /// (at 240 mm/s) to 0.95 (at 20 mm/s). Takes in which the finger was lifted for the second half
-    /// had at most 0.47.
+    /// Default of [`Self::on_target`]. This value was chosen with simulated takes of 10 s with
+    /// strokes of 83 mm, on five surfaces with four seeds for each surface. Complete takes had
+    /// shares of 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s). Takes in which the finger was lifted for
+    /// the second half had shares of at most 0.47.
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
-    /// Returns the required number of sweeps if the user gives none. It is half the number of
-    /// strokes that the target makes in a take of this length (seconds). The first and the last
-    /// stroke do not count, because the ends of the take cut them off. Without a target speed it is
-    /// 0, because then no strokes are shown.
+    /// Returns the default of [`Self::sweeps`]. The result is half the number of strokes that the
+    /// target on the screen makes in a take of this length (seconds). The first and the last stroke
+    /// do not count, because the ends of the take cut them off. Without a target speed the result
+    /// is 0, because the screen then shows no strokes.
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
@@ -82,26 +83,27 @@ impl Target {
     }
 }
 
-/// How much of a take is usable. Shares are parts of its length, 0 to 1.
+/// How much of a take is usable. Each share is a fraction of the take's length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Share of time in which the finger slides on its target. Three conditions must hold for means
-    /// over 50 ms: the friction is at least half its mean; the speed lies between half the target
-    /// speed and the tolerance above the target; and the force is within the tolerance of its
-    /// target. A condition without a target always holds.
+    /// over 50 ms. The friction is at least half its mean over the take. The speed is at least half
+    /// the target speed, and above the target speed by at most the tolerance. The force is within
+    /// the tolerance of its target. Without a target for the speed or the force, that condition
+    /// always holds.
     pub on_target: f64,
     /// Share of time in which the finger slides.
     pub sliding: f64,
-    /// Share of time in which the speed meets its condition. Absent without a target or a measured
-    /// speed.
+    /// Share of time in which the speed meets the condition that [`Self::on_target`] describes.
+    /// Absent without a target or a measured speed.
     pub speed: Option<f64>,
-    /// Share of time in which the normal force meets its condition. Absent without a target or a
-    /// measured force.
+    /// Share of time in which the normal force meets the condition that [`Self::on_target`]
+    /// describes. Absent without a target or a measured force.
     pub force: Option<f64>,
     /// Number of complete sweeps.
     pub sweeps: usize,
-    /// Start and end of the longest time off target, seconds. Absent if the whole take is on
-    /// target.
+    /// Start and end of the longest interval in which the finger is not on its target, seconds.
+    /// Absent if the whole take is on target.
     pub longest_off_s: Option<[f64; 2]>,
 }
 

@@ -28,7 +28,7 @@ pub struct TakeHeader {
     /// Number of the take, from 1.
     #[schemars(range(min = 1))]
     pub number: u32,
-    /// Program and version that recorded it.
+    /// Name and version of the program that recorded the take.
     pub tool: String,
     /// The source, as the user named it.
     pub source: String,
@@ -44,21 +44,21 @@ pub struct TakeHeader {
     /// Length of a complete take, seconds.
     #[schemars(range(max = LONGEST_S), extend("exclusiveMinimum" = 0))]
     pub seconds: f64,
-    /// Recorded signals: role and unit, each role once.
+    /// The role and the unit of each recorded signal. No role occurs twice.
     #[schemars(with = "Vec<SignalText>", length(min = 1))]
     pub signals: Vec<(String, String)>,
-    /// Means that were subtracted from the signals. Empty without tare.
+    /// Mean of each signal that was subtracted as tare. Empty if the session has no tare.
     pub tare: Vec<f64>,
-    /// Signals of the tracker, without the time: role and unit, each role once. Empty without a
-    /// tracker.
+    /// The role and the unit of each signal of the tracker, except the time. No role occurs twice.
+    /// Empty if there is no tracker.
     #[schemars(with = "Vec<SignalText>")]
     pub tracker: Vec<(String, String)>,
     pub target_speed_mm_s: Option<f64>,
     /// Target normal force, newtons.
     pub target_force_n: Option<f64>,
-    /// Allowed relative difference from the target.
+    /// Allowed relative difference of speed and force from their targets.
     pub tolerance: f64,
-    /// What the take must have to be accepted.
+    /// Requirements that the take must meet to be accepted.
     pub required: Requirements,
     /// Format of the recording: see [`Format`].
     pub format: Format,
@@ -107,7 +107,8 @@ pub struct TakeData {
     pub header: TakeHeader,
     /// Samples of each signal, all of the same length.
     pub signals: Vec<Vec<f64>>,
-    /// Time since the start of the take (s), then the values of each tracker signal.
+    /// Columns of the tracker: first the times since the start of the take (s), then the values of
+    /// each signal.
     pub tracker: Vec<Vec<f64>>,
 }
 
@@ -133,7 +134,7 @@ impl TakeData {
         self.frames() as f64 / self.header.rate_hz
     }
 
-    /// Returns whether the take has as many frames as its header states.
+    /// Returns whether the take has as many frames as a complete take.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.frames() >= self.header.frames()
@@ -161,8 +162,8 @@ impl TakeHeader {
     /// Reads a header from JSON.
     ///
     /// # Errors
-    /// A text that states what is wrong: another version, unknown keys, or values that no session
-    /// would have written.
+    /// A text that states what is wrong: the header has another version, unknown keys, or values
+    /// that no session writes.
     pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {

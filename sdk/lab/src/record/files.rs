@@ -11,10 +11,11 @@ use crate::error::LabError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// Text with names, units and all digits. It can be read without further settings.
+    /// Text with the names and units of the signals, and with all digits of the values. `htex`
+    /// reads this format without further settings.
     #[default]
     Csv,
-    /// A NumPy array (frames, signals) of f8.
+    /// A NumPy array of 64-bit floats with the shape (frames, signals).
     Npy,
     /// 32-bit floats. The value 1 means one newton, or one unit of the signal.
     Wav,

@@ -1,9 +1,9 @@
-//! Guidance for the user during a recording: the motion of the target, a metronome, the user's own
-//! finger, and whether the force is right.
+//! Guidance for the user during a recording. It shows the motion of the target, the position of the
+//! user's finger, and whether the force is right, and it drives a metronome.
 
 use serde::Serialize;
 
-/// The target of a recording, as it is displayed.
+/// The target of a recording, as the screen shows it.
 ///
 /// On the screen, the target is a square that moves back and forth over a stroke at the target
 /// speed. The metronome beats at each turn. The target already moves before the take begins, so
@@ -38,11 +38,11 @@ pub struct Guidance {
 pub enum Force {
     /// There is no target, or the force is not measured.
     Unknown,
-    /// Below the target's range (yellow in the paper).
+    /// The force is below the target's range (yellow in the paper).
     Below,
-    /// In the target's range (green).
+    /// The force is in the target's range (green in the paper).
     Within,
-    /// Above the target's range (red).
+    /// The force is above the target's range (red in the paper).
     Above,
 }
 
@@ -69,11 +69,11 @@ pub struct Moment<'a> {
     pub elapsed_s: f64,
     /// Length of the phase, seconds.
     pub of_s: f64,
-    /// Normal force, newtons: the absolute value of the mean over the last 50 ms. The same means
-    /// are used to judge a take.
+    /// Normal force, newtons: the absolute value of the mean over the last 50 ms. The judgement of
+    /// a take also uses means over 50 ms.
     pub force_n: Option<f64>,
-    /// Position of the finger along the axis on which it moves most, mm from its lowest position so
-    /// far.
+    /// Position of the finger along the axis on which the finger moves most, mm, measured from the
+    /// lowest position so far.
     pub position_mm: Option<f64>,
     /// Samples since the previous moment, for each axis of the texture's signal, in the signal's
     /// unit.
@@ -91,8 +91,8 @@ impl Phase {
         }
     }
 
-    /// Returns the time since the take began, seconds. It is negative during the countdown. Returns
-    /// `None` in phases without motion of the target.
+    /// Returns the time since the start of the take, seconds; negative during the countdown.
+    /// Returns `None` in phases without motion of the target.
     #[must_use]
     pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
         match self {
@@ -105,8 +105,8 @@ impl Phase {
 
 impl Guidance {
     /// Returns the target's position at a time, mm, or `None` without a target speed. The target is
-    /// at 0 mm at 0 s. Before this, it moves as after it but backwards in time, so that the
-    /// countdown leads smoothly into the take.
+    /// at 0 mm at 0 s. Its motion before 0 s mirrors its motion after 0 s, so that the countdown
+    /// leads smoothly into the take.
     #[must_use]
     pub fn target_mm(&self, at_s: f64) -> Option<f64> {
         let way_mm = self.speed_mm_s? * at_s.abs();
@@ -114,8 +114,8 @@ impl Guidance {
         Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
     }
 
-    /// Returns how many times the target has turned until a time, or `None` without a target speed.
-    /// The metronome beats at each turn.
+    /// Returns how many times the target turns from 0 s to the given time, or `None` without a
+    /// target speed. The number is negative before 0 s. The metronome beats at each turn.
     #[must_use]
     pub fn turns(&self, at_s: f64) -> Option<i64> {
         Some((self.speed_mm_s? * at_s / self.stroke_mm).floor() as i64)

@@ -39,22 +39,23 @@ pub struct Verdict {
     pub speed_mm_s: Option<MeanRange>,
     /// Normal force, newtons.
     pub force_n: Option<MeanRange>,
-    /// How much of the take is usable. Absent if no texture can be read from it.
+    /// How much of the take is usable. Absent if no texture can be read from the take.
     pub coverage: Option<Coverage>,
     /// Number of 0.2 s segments from which a texture would be read.
     pub segments: usize,
-    /// Problems of the signals, such as clipping. Each is a sentence with its code.
+    /// Problems of the signals, such as clipping. Each entry is a sentence with the code of the
+    /// problem.
     pub findings: Vec<String>,
 }
 
 /// Judges a take. The mean, minimum and maximum of speed and normal force must be within the
-/// tolerance of their targets. They are measured over the middles of the sweeps, which are the same
-/// as in `htex fit`.
+/// tolerance of their targets. These three values are measured over the middles of the sweeps,
+/// which `htex fit` also uses.
 ///
-/// Minimum and maximum are those of means over 50 ms, as in [`htex_author::Spread`], because faster
-/// changes belong to the texture. Only the middles of sweeps count, because the finger turns
-/// between sweeps. The take must also meet the requirements in its header
-/// ([`crate::record::Requirements`]).
+/// Minimum and maximum are the lowest and the highest mean over 50 ms, as in
+/// [`htex_author::Spread`], because faster changes belong to the texture. Only the middles of
+/// sweeps count, because the finger turns between sweeps. The take must also meet the requirements
+/// in its header ([`crate::record::Requirements`]).
 #[must_use]
 pub fn judge(data: &TakeData) -> Verdict {
     let header = &data.header;

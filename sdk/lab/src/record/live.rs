@@ -1,5 +1,5 @@
-//! Computes a live spectrum of what the finger feels now, with the same code that reads textures
-//! from recordings.
+//! Computes a live spectrum of the newest samples during a recording, with the same code that reads
+//! textures from recordings.
 
 use std::collections::VecDeque;
 
@@ -20,9 +20,9 @@ const SQUARED_RMS: f64 = 1.0 / 3.0;
 
 /// The newest 0.4 s of a texture's signal.
 ///
-/// Its spectrum is the same as `htex fit` would compute from these samples, except that the
-/// response of the setup is not divided out. The steps are: remove the mean, apply a Hann window,
-/// compute the FFT, reduce the axes to one, and take the root of the mean power.
+/// [`Self::spectrum`] computes the same spectrum as `htex fit` would from these samples, but
+/// without correcting for the response of the setup. The steps are: remove the mean, apply a Hann
+/// window, compute the FFT, reduce the axes to one, and take the root of the mean power.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -52,7 +52,8 @@ pub struct LiveSpectrum {
     /// Frequencies, hertz: multiples of 5 Hz from 20 to 1000 Hz, or to half the sample rate.
     pub frequency_hz: Vec<f64>,
     /// Magnitude at each frequency, decibels relative to one unit of the quantity. A sinusoid of
-    /// amplitude A on the grid has 20 log10 A. The lowest value is -200 dB.
+    /// amplitude A at a frequency of the grid has a level of 20 log10 A. The lowest level is -200
+    /// dB.
     pub level_db: Vec<f64>,
     /// RMS in each of nine half-overlapping bands, decibels relative to one unit.
     pub band_db: Vec<f64>,
@@ -81,7 +82,7 @@ impl LiveSignal {
     }
 
     /// Returns the spectrum. Returns `None` if there are less than 0.2 s of samples, or if the
-    /// samples are not a valid recording, for example because one is infinite.
+    /// samples are not a valid recording, for example because a sample is infinite.
     #[must_use]
     pub fn spectrum(&self) -> Option<LiveSpectrum> {
         let axes = self.axes.iter().map(|axis| axis.iter().copied().collect());

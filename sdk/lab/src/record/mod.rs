@@ -1,30 +1,31 @@
 //! Guided recordings: reads the signals of a source, converts them to newtons, saves them to disk
 //! at once, and judges each recording (a take) against its target.
 //!
-//! A take is recorded into a part file. Each second is appended and flushed to disk. So a program
-//! that is killed loses at most the current second, and [`recover`] converts the rest to a
-//! recording. A complete take is judged ([`judge`]). If the mean, minimum or maximum of speed or
-//! force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
-//! "Texture recording"), the take is set aside and recorded again. The same happens if the finger
-//! slides on its target for too short a time, or if there are too few sweeps ([`Requirements`]).
-//! The results are recordings that `htex fit` reads, each with a JSON file.
+//! A take is recorded into a part file. Each full second of samples is appended to this file and
+//! flushed to disk. So a program that is killed loses at most the current second, and [`recover`]
+//! converts the contents of the part file to a recording. A complete take is judged ([`judge`]). If
+//! the mean, minimum or maximum of speed or force differs from its target by more than the
+//! tolerance (10 % in the paper, Supplementary, "Texture recording"), the take is set aside and
+//! recorded again. The take is also set aside if the finger slides on its target for too short a
+//! time, or if there are too few sweeps ([`Requirements`]). The results are recordings that `htex
+//! fit` reads, each with a JSON file.
 //!
 //! From a finger to a recording:
 //!
-//! 1. A [`htex_device::Input`] delivers frames of its channels: a card, a sound card, a library,
-//!    or a file ([`Replay`]).
+//! 1. A [`htex_device::Input`] delivers frames of its channels. It reads them from a data
+//!    acquisition card, a sound card, a library, or a file ([`Replay`]).
 //! 2. `signals` converts these frames to forces: it applies the six-axis calibration, the column
 //!    map and the tare. A tracker ([`TrackerRows`]) has its own sample rate.
-//! 3. A take grows in a [`PartFile`], a file of hashed chunks. The same function (`finish`) makes
-//!    recordings from takes that are complete, that ended with an error, or that a killed program
-//!    left.
+//! 3. A take grows in a [`PartFile`], a file of hashed chunks. The function `finish` makes
+//!    recordings from all part files: from complete takes, from takes that ended with an error, and
+//!    from takes that a killed program left.
 //! 4. [`judge`] compares speed and force with their targets, over the segments that a fit would
 //!    read. The JSON next to a take tells `htex compare`, `htex process` and the export of studies
 //!    how to read the take.
-//! 5. `guide` has the state that guides the finger, for each block: phase, force, position and
-//!    samples. `live` has the newest 0.4 s of the signal. The terminal draws each state. A page
-//!    only stores it, and when the page asks, the thread of its server computes the spectrum from a
-//!    copy.
+//! 5. `guide` defines the state that guides the finger: phase, force, position and new samples. The
+//!    session updates this state with each block. `live` stores the newest 0.4 s of the signal. The
+//!    terminal draws each state. For the web page, the session only stores the newest state. When
+//!    the page requests it, the thread of the page's server computes the spectrum from a copy.
 
 mod calibration;
 mod coverage;

@@ -1,5 +1,5 @@
-//! Shows the guidance on a web page ([`crate::page`]). The recording stores the newest state of a
-//! session, and the page requests it.
+//! Shows the guidance on a web page ([`crate::page`]). The recording thread stores the newest state
+//! of the session, and the page requests this state.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -133,7 +133,7 @@ impl GuidePage {
     /// source's sample rate.
     ///
     /// # Errors
-    /// [`LabError::Page`] if the port is taken or there are no random numbers.
+    /// [`LabError::Page`] if the port is taken or the system provides no random numbers.
     pub fn open(
         port: u16,
         setup: &Setup,
@@ -232,7 +232,8 @@ impl GuidePage {
         });
     }
 
-    /// Shows the end of the session. If the page is open, waits until it has received the end.
+    /// Shows the end of the session. If the page is open in a browser, waits until the page has
+    /// received the result of the session.
     pub fn end(&self, recorded: &Result<TakeReport, LabError>) {
         self.shown.lock().end = Some(match recorded {
             Ok(take) => End { is_kept: true, text: take.file.display().to_string() },

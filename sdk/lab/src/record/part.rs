@@ -1,10 +1,11 @@
-//! The part file, which stores a take while it is recorded. It is only appended to, and flushed to
-//! disk every second.
+//! The part file, which stores a take while it is recorded. The program only appends to this file,
+//! and flushes it to disk every second.
 //!
-//! The first line is the header as JSON. Chunks follow it. A chunk has one byte for its kind, the
-//! number of data bytes (u32), the data as f64 values, and the first eight bytes of the BLAKE3 hash
-//! of all of these. All numbers are little-endian. A reader ignores everything from the first
-//! incomplete or damaged chunk on, which a crash may have left.
+//! The first line is the header as JSON. After this line, the file contains chunks. A chunk
+//! consists of one byte for its kind, the number of data bytes (u32), the data as f64 values, and a
+//! hash. The hash is the first eight bytes of the BLAKE3 hash of the preceding parts of the chunk.
+//! All numbers are little-endian. A crash may leave an incomplete or damaged chunk. A reader
+//! ignores the first such chunk and everything after it.
 
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
@@ -68,7 +69,8 @@ impl PartFile {
         &self.path
     }
 
-    /// Appends interleaved frames. Each full second is written and flushed to disk.
+    /// Appends interleaved frames. When a full second of frames is waiting, writes them and flushes
+    /// the file to disk.
     ///
     /// # Errors
     /// [`LabError::File`].
@@ -78,12 +80,13 @@ impl PartFile {
         if self.waiting >= self.second { self.flush() } else { Ok(()) }
     }
 
-    /// Appends interleaved rows of the tracker. They are written together with the frames.
+    /// Appends interleaved rows of the tracker. The rows are written to disk together with the next
+    /// frames.
     pub fn push_tracker(&mut self, rows: &[f64]) {
         self.rows.extend_from_slice(rows);
     }
 
-    /// Writes everything that is waiting and flushes it to disk.
+    /// Writes all waiting frames and rows, and flushes the file to disk.
     ///
     /// # Errors
     /// [`LabError::File`].
@@ -117,8 +120,8 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`LabError::File`] if the file cannot be read or is not a part file. [`LabError::Busy`] while
-/// another program writes to it.
+/// [`LabError::File`] if the file cannot be read or is not a part file. [`LabError::Busy`] if
+/// another program is writing to the file.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.map_err(FileError::in_file(path))?;

@@ -1,5 +1,6 @@
 //! Reads a source in blocks: the values of its signals, and the tracker's rows up to the same time.
-//! Also runs the phases of a session block by block, and computes the state that the user sees.
+//! This module also runs the phases of a session block by block, and computes the state that the
+//! user sees.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -151,7 +152,7 @@ const FORCE_S: f64 = 0.05;
 pub enum Next {
     /// The session continues.
     Go,
-    /// The session ends. What was recorded so far is kept.
+    /// The session ends. The samples recorded so far stay on disk.
     Stop,
 }
 

@@ -11,8 +11,8 @@ use htex_device::{
     InputStream, Setting, SettingKind, Settings,
 };
 
-/// The input adapter that replays files, in all formats that [`read_channels`] reads. The channels
-/// are all columns except the time.
+/// The input adapter that replays recording files, in all formats that [`read_channels`] reads.
+/// Each column of the file except the time is a channel.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Replay;
 
@@ -70,7 +70,8 @@ impl Adapter for Replay {
 }
 
 impl Replay {
-    /// Opens a file. If `fast` is true, it is replayed without waiting.
+    /// Opens a file. If `fast` is true, the samples come as fast as they are read; otherwise they
+    /// come at their sample rate.
     ///
     /// # Errors
     /// The errors of [`Adapter::open_input`].

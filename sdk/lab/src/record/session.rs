@@ -1,4 +1,4 @@
-//! A recording session: records takes with one name until a take keeps to its target.
+//! A recording session, which records takes under one name until one of them keeps to its target.
 
 use std::path::Path;
 
@@ -30,7 +30,8 @@ impl Session {
     /// Creates a session and its folder. The source does not start yet.
     ///
     /// # Errors
-    /// If the setup is out of range, or a target is given for something that is not measured.
+    /// If a value of the setup is out of range, or if there is a target for a speed or a force that
+    /// no signal measures.
     pub fn new(
         setup: Setup,
         source: Box<dyn Input>,
@@ -66,8 +67,8 @@ impl Session {
     ///
     /// # Errors
     /// [`LabError::OffTarget`] if no take kept to its target. [`LabError::Left`] if `watch` ended
-    /// the session. Errors of the source: what was recorded before such an error is in the folder
-    /// `incomplete`.
+    /// the session. The errors of the source; the samples recorded before such an error are in the
+    /// folder `incomplete`.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,

@@ -17,29 +17,29 @@ pub(crate) const LONGEST_S: f64 = 3600.0;
 pub struct Setup {
     /// Folder for the takes. It is created if it does not exist.
     pub folder: PathBuf,
-    /// Name of the takes. It becomes a part of their file names.
+    /// Name of the takes. The file name of each take contains this name.
     pub name: String,
     /// Length of a take, seconds; at most an hour.
     pub seconds: f64,
     /// Length of the countdown before each take, seconds. During this time the finger can start to
     /// follow the target.
     pub countdown_s: f64,
-    /// When to measure the mean forces without a finger, over one second. These means are then
-    /// subtracted.
+    /// When to measure the mean forces without a finger, over one second. The session subtracts
+    /// these means from the forces of the takes.
     pub tare: Tare,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
     /// Target speed and normal force.
     pub target: Exploration,
-    /// Allowed relative difference of the mean, minimum and maximum from the target; 0.1 in the
-    /// paper.
+    /// Allowed relative difference of the mean, minimum and maximum of the speed and the force from
+    /// their targets; 0.1 in the paper.
     pub tolerance: f64,
     /// Requirements that a take must meet to be accepted.
     pub required: Requirements,
-    /// Largest number of takes that are tried.
+    /// Largest number of takes in one session.
     pub attempts: u32,
     pub format: Format,
-    /// Program and version, for the JSON next to a recording.
+    /// Name and version of the program, for the JSON next to a recording.
     pub tool: String,
     /// The source as the user named it, for the JSON.
     pub source: String,
@@ -54,8 +54,8 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. From the second take on, the user first gets a countdown to lift the
-    /// finger.
+    /// Before each take. From the second take on, the user first gets time to lift the finger, as
+    /// long as the countdown.
     Each,
 }
 

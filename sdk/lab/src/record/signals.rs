@@ -23,10 +23,12 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Creates the conversion. The n-th calibration applies to the n-th group of six channels,
-    /// which become `fx, fy, fz, tx, ty, tz` (with several sensors `fx1`, `fx2` and so on). Other
-    /// channels keep their names. The map, or the names themselves, assign channels to roles. For
-    /// example, `lateral_x=fx1+fx2` sums two sensors.
+    /// Creates the conversion. The first calibration applies to the first six channels, the second
+    /// one to the next six, and so on. The six channels of a sensor get the names `fx, fy, fz, tx,
+    /// ty, tz`; if there are several sensors, the number of the sensor is appended (`fx1`, `fx2`,
+    /// …). Other channels keep their names. The map assigns channels to roles; without a map, the
+    /// names of the channels determine the roles. For example, `lateral_x=fx1+fx2` sums two
+    /// sensors.
     ///
     /// # Errors
     /// If there are fewer channels than the calibrations need, or the channels do not fit the map.
@@ -71,7 +73,7 @@ impl Signals {
         self.roles.iter().position(|own| *own == role)
     }
 
-    /// Returns the assumptions about units, each as a full sentence.
+    /// Returns the assumptions that were made about units, each as a full sentence.
     #[must_use]
     pub fn warnings(&self) -> &[Notice] {
         self.map.warnings()
@@ -88,8 +90,8 @@ impl Signals {
         &self.offsets
     }
 
-    /// Sets the means that are subtracted from now on. They replace earlier ones, and an empty list
-    /// subtracts nothing. Positions and speeds are not changed.
+    /// Sets the means that are subtracted from now on. The new means replace all earlier means;
+    /// with an empty list, nothing is subtracted. Positions and speeds are never changed.
     pub fn tare(&mut self, means: &[f64]) {
         let moves = |role: &Role| matches!(role, Role::Speed | Role::X | Role::Y);
         let pairs = self.roles.iter().zip(means);

@@ -1,4 +1,4 @@
-//! Finds out how to read the recording of a take, from the JSON next to it.
+//! Determines from the JSON next to a take's recording how to read the recording.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -29,8 +29,8 @@ pub struct KnownTake {
 }
 
 impl KnownTake {
-    /// Finds a take. `file` is its recording, or the JSON next to it. Returns `None` if there is no
-    /// such JSON, or if the JSON belongs to a recording in another format.
+    /// Finds a take. `file` is the take's recording, or the JSON next to the recording. Returns
+    /// `None` if there is no such JSON, or if the JSON belongs to a recording in another format.
     ///
     /// # Errors
     /// [`LabError::File`] if the JSON describes a take but has another version or unknown
@@ -64,8 +64,8 @@ impl KnownTake {
         Ok(Some(Self { recording, settings }))
     }
 
-    /// Returns the take's settings, together with those of the given settings that do not concern
-    /// its columns.
+    /// Returns the settings for reading the take. The columns, rate, quantity and tracker come from
+    /// the take, and all other settings from `given`.
     #[must_use]
     pub fn with_given(self, given: &ReadingSettings) -> ReadingSettings {
         let given = given.clone();

@@ -31,7 +31,8 @@ pub trait TrackerRows: Send {
     fn restart(&mut self);
 }
 
-/// A tracker that replays a file, on the clock of the source, which starts at 0 s.
+/// A tracker that replays a file. The times of its rows refer to the clock of the source, which
+/// starts at 0 s.
 #[derive(Debug)]
 pub struct TableTracker {
     signals: Vec<(String, String)>,
@@ -41,7 +42,7 @@ pub struct TableTracker {
 }
 
 impl TableTracker {
-    /// Reads a file with positions or speeds. Its first row gets the time 0 s.
+    /// Reads a file with positions or speeds. The first row of the file gets the time 0 s.
     ///
     /// # Errors
     /// If the file cannot be read, or has neither positions nor speeds.
@@ -99,7 +100,7 @@ pub struct LineTracker {
 }
 
 impl LineTracker {
-    /// Reads lines in its own thread, which ends with the input.
+    /// Starts a thread that reads the lines. The thread ends when the input ends.
     pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
         // The queue is limited, so that a tracker that nobody reads does not fill the memory.
         let (sender, lines) = sync_channel(MOST_LINES);

@@ -1,4 +1,5 @@
-//! Cuts records into hits or windows, counts the usable ones and averages them.
+//! Cuts records into hits or windows, counts the usable hits or windows, and averages their
+//! spectra.
 
 use htex_dsp::fft::RealFft;
 use num_complex::Complex;

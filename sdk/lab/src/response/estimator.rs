@@ -1,16 +1,16 @@
 //! Estimators of a response from averaged spectra.
 //!
-//! The result of total least squares (`Hv`) depends on the units of the channels. So each channel
-//! is first divided by the root of its power in the band.
+//! The result of total least squares (`Hv`) depends on the units of the channels. To remove this
+//! dependence, each channel is first divided by the root of its power in the band.
 
 use std::fmt;
 
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-/// An estimator of a frequency response. It uses the auto spectra `Gxx` and `Gyy` and the cross
-/// spectrum `Gxy` of input and output. All three estimators have the phase of `Gxy`, and
-/// `|H1| <= |Hv| <= |H2|`. Without noise they are equal.
+/// An estimator of a frequency response. An estimator computes the response from the auto spectra
+/// `Gxx` (input) and `Gyy` (output) and from the cross spectrum `Gxy`. All three estimators have
+/// the phase of `Gxy`, and `|H1| <= |Hv| <= |H2|`. Without noise, the three estimators are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -23,8 +23,8 @@ pub enum Estimator {
     H2,
     /// Total least squares (Rocklin, Crowley and Vold, 1985), for noise in both channels. Each
     /// channel is first divided by the root of its power in the band, so that the result does not
-    /// depend on units. The estimate is unbiased if both channels have white noise, and if this
-    /// noise is equal in both relative to the channel's power.
+    /// depend on units. The estimate is unbiased if both channels have white noise, and if the
+    /// ratio of noise power to signal power is the same in both channels.
     Hv,
 }
 

@@ -1,9 +1,9 @@
 //! Measures a frequency response from records: the response itself, its largest magnitude, and
 //! warnings about its accuracy.
 //!
-//! The largest magnitude may lie between two frequencies of the grid. It is interpolated in
-//! 1/magnitude², which is a parabola for a resonance. The response file contains only the grid,
-//! because its readers interpolate.
+//! The largest magnitude may lie between two frequencies of the grid. To find it, the code
+//! interpolates 1/magnitude², which is a parabola near a resonance. The response file contains only
+//! the values on the grid, because the programs that read the file interpolate.
 
 use htex_author::recording::SetupResponse;
 use htex_base::finding::Hint;
@@ -140,29 +140,30 @@ pub struct MeasuredResponse {
     pub resolution_hz: f64,
     /// Number of hits or windows that were averaged.
     pub averages: usize,
-    /// Every hit or window, whether it was used or thrown out.
+    /// All hits or windows, including those that were thrown out.
     pub pieces: Vec<Piece>,
     /// Frequencies, hertz: multiples of the resolution.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude, output's unit per input's unit; 0 where there is no input.
+    /// Magnitude, in the output's unit per unit of the input; 0 where there is no input.
     pub magnitude: Vec<f64>,
     /// Phase of the output relative to the input, radians, unwrapped.
     pub phase_rad: Vec<f64>,
     /// Coherence, 0 to 1.
     pub coherence: Vec<f64>,
     /// Relative standard deviation of the magnitude, at most 1: `sqrt(1 - coherence) / sqrt(2
-    /// coherence averages)` (Bendat & Piersol, chapter 9). It covers only random errors.
+    /// coherence averages)` (Bendat & Piersol, chapter 9). This value covers only random errors.
     pub relative_error: Vec<f64>,
-    /// The largest magnitude and its frequency. `None` if it lies at an edge of the band.
+    /// The largest magnitude and its frequency. `None` if the largest magnitude lies at an edge of
+    /// the band.
     pub peak: Option<Peak>,
     /// Warnings about the accuracy of the result, as full sentences.
     pub warnings: Vec<String>,
 }
 
 impl MeasuredResponse {
-    /// Converts the response to the type with which recordings are corrected and scenes are
-    /// compensated. [`write_csv`](SetupResponse::write_csv) writes the file that recordings and
-    /// scenes use.
+    /// Converts the response to the type that corrects recordings for the rig, and compensates
+    /// scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file that
+    /// recordings and scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {
         SetupResponse {
@@ -198,8 +199,8 @@ fn independent(settings: &ResponseSettings, used: usize) -> f64 {
 
 /// The largest magnitude of a response.
 ///
-/// It is interpolated by a parabola through `1 / magnitude²` at the largest point and its two
-/// neighbours. A lightly damped resonance has this shape.
+/// The peak is interpolated: a parabola is put through `1 / magnitude²` at the largest point of the
+/// grid and its two neighbours. For a lightly damped resonance, `1 / magnitude²` is a parabola.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
     pub frequency_hz: f64,

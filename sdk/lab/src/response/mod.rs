@@ -4,8 +4,8 @@
 //! The input is either the force of a hammer in separate hits, or the continuous drive of a
 //! display. Each hit, or each window of a continuous drive, is transformed to a spectrum. The
 //! averaged auto spectra and cross spectrum give the response ([`Estimator`]) and the coherence.
-//! Hits that would distort the average are thrown out. Each of these is reported with its time and
-//! [`Reason`].
+//! Hits or windows that would distort the average are thrown out. The result lists each of them
+//! with its time and [`Reason`].
 //!
 //! Sources of the formulas:
 //! - J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010: spectra of segments (section

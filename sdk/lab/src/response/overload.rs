@@ -1,5 +1,5 @@
-//! Finds a signal's level at rest, its noise, and samples at the limit of a sensor, amplifier or
-//! converter.
+//! Finds three properties of a signal: its level at rest, its noise, and the samples that are at
+//! the limit of a sensor, amplifier or converter.
 
 use std::ops::Range;
 

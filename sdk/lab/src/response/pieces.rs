@@ -1,7 +1,7 @@
-//! The parts of recordings (pieces) that are averaged or thrown out.
+//! The pieces of recordings: hits or windows, which are averaged or thrown out.
 //!
 //! A response is an average over pieces. Each piece has a time and, if it is thrown out, a reason.
-//! So a measurement can be judged without its samples.
+//! So a reader can judge a measurement without its samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,14 +10,15 @@ use serde::Serialize;
 
 use super::record::Channel;
 
-/// A hit, or a window of a continuous drive: a part of a recording that is transformed.
+/// A part of a recording that is transformed to a spectrum: a hit, or a window of a continuous
+/// drive.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Piece {
     pub file: String,
     /// Time of the hit's trigger, or of the window's start, in the file, seconds.
     pub time_s: f64,
-    /// Largest input in the window, measured from its level at rest, in the input's unit, with its
-    /// sign.
+    /// Largest deviation of the input from its level at rest in this part, with its sign, in the
+    /// input's unit.
     pub peak: f64,
     /// Why the piece was thrown out; `None` if it is used.
     pub thrown_out: Option<Reason>,
@@ -43,12 +44,12 @@ pub enum Reason {
     },
     /// The recording has no samples for the part before the trigger.
     StartsLate,
-    /// The recording ends before the window does.
+    /// The recording ends before the end of the window.
     EndsEarly {
         /// Missing time, seconds.
         missing_s: f64,
     },
-    /// The drive is below a tenth of its strongest window (RMS).
+    /// The RMS of the drive in this window is below a tenth of the RMS in the strongest window.
     Silent,
 }
 

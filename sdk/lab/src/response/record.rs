@@ -35,8 +35,9 @@ impl fmt::Display for Channel {
 
 /// Input and output of a setup, recorded together.
 ///
-/// Both channels have the same length, finite samples with absolute values of at most 1e12, and are
-/// not constant. Any units are allowed. The response is in the output's unit per unit of the input.
+/// Both channels have the same length. Their samples are finite, with absolute values of at most
+/// 1e12, and neither channel is constant. Any units are allowed. The response is in the output's
+/// unit per unit of the input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
@@ -47,7 +48,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Creates a record from the channels of a file. They start at 0 s.
+    /// Creates a record from the channels of a file. The first samples are at 0 s.
     ///
     /// # Errors
     /// The sample rate is not above 0 or is above 1e9 Hz, the channels have different lengths, a
@@ -63,8 +64,8 @@ impl Record {
         Ok(record)
     }
 
-    /// Creates a record from a recording that was read with [`column_map`]. Its first axis is the
-    /// input, its second axis the output.
+    /// Creates a record from a recording that was read with [`column_map`]. The recording's first
+    /// axis is the input, and its second axis is the output.
     ///
     /// # Errors
     /// The errors of [`Self::new`], and an error if the recording does not have two axes.
@@ -140,9 +141,9 @@ impl Record {
     }
 }
 
-/// Returns the map with which a recording's input and output are read. `input` and `output` are
-/// `COLUMN`, `COLUMN:SCALE` or an expression. `others` maps further roles, for example
-/// `time=stamp_ms:0.001`. Without a scale, values are used as they are in the file.
+/// Returns the column map for reading the input and the output of a recording. `input` and `output`
+/// have the form `COLUMN` or `COLUMN:SCALE`, or are expressions. `others` maps further roles, for
+/// example `time=stamp_ms:0.001`. Without a scale, values are used as they are in the file.
 ///
 /// ```
 /// let map = htex_lab::response::column_map("hammer_V:22.5", "fx1+fx2", None)?;
@@ -151,8 +152,8 @@ impl Record {
 /// ```
 ///
 /// # Errors
-/// A text is not a column or an expression, one column is given for both channels, or the further
-/// roles include an axis.
+/// `input` or `output` is neither a column nor an expression, both name the same column, or
+/// `others` maps an axis.
 pub fn column_map(
     input: &str,
     output: &str,

@@ -1,5 +1,5 @@
-//! Settings for measuring a response. They are flags of the command and keywords of the Python
-//! package.
+//! Settings for measuring a response. The settings are flags of the command line and keywords of
+//! the Python package.
 
 use htex_base::finding::Hint;
 use serde::{Deserialize, Serialize};
@@ -16,8 +16,8 @@ const FEWEST_SAMPLES: f64 = 16.0;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct ResponseSettings {
-    /// Estimator of the response: h1 if the output has noise, h2 if the input has noise, hv if both
-    /// have noise (total least squares)
+    /// Estimator of the response. Use h1 if the output has noise, h2 if the input has noise, and hv
+    /// (total least squares) if both have noise
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "h1"))]
     pub estimator: Estimator,
 
@@ -37,12 +37,13 @@ pub struct ResponseSettings {
     pub high_hz: f64,
 
     /// Count the input as overloaded where its magnitude reaches this value. By default, four equal
-    /// samples in a row at the highest or lowest value count as an overload
+    /// samples in a row at the highest or lowest value count as an overload of hits; the input of a
+    /// continuous drive is not checked
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
-    /// Count the output as overloaded where its magnitude reaches this value. By default, the same
-    /// rule applies as for the input
+    /// Count the output as overloaded where its magnitude reaches this value. By default, four
+    /// equal samples in a row at the highest or lowest value count as an overload
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 
@@ -54,8 +55,8 @@ pub struct ResponseSettings {
     ))]
     pub continuous: bool,
 
-    /// For hits: begin each window this time before the trigger, s. htex subtracts the mean of this
-    /// part from the window [default: 0.02]
+    /// For hits: time by which each window begins before the trigger, s. htex subtracts the mean of
+    /// the samples before the trigger from the window [default: 0.02]
     #[cfg_attr(feature = "clap", arg(long = "pre-trigger", value_name = "S"))]
     pub pre_trigger_s: Option<f64>,
 
@@ -64,19 +65,19 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub trigger: Option<f64>,
 
-    /// For hits: discard a hit as a double hit if its window has a second contact of at least this
-    /// size, as a fraction of the hit [default: 0.1]
+    /// For hits: smallest size of a second contact, as a fraction of the hit. htex discards a hit
+    /// if its window has such a second contact (double hit) [default: 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub double: Option<f64>,
 
-    /// For hits: fade the input to zero from this time after the trigger on, s. This removes the
-    /// noise between hits
+    /// For hits: time after the trigger at which htex begins to fade the input to zero, s. The fade
+    /// removes the noise between hits
     #[cfg_attr(feature = "clap", arg(long = "force-window", value_name = "S"))]
     pub force_window_s: Option<f64>,
 
-    /// For hits: multiply both channels by an exponential window with this time constant, s, if
-    /// responses last longer than the window. This raises the measured damping by the inverse of
-    /// the time constant
+    /// For hits: time constant of an exponential window, s. htex multiplies both channels by this
+    /// window. Use it if responses last longer than the window; the measured damping rises by the
+    /// inverse of the time constant
     #[cfg_attr(feature = "clap", arg(long = "exponential", value_name = "S"))]
     pub exponential_s: Option<f64>,
 }

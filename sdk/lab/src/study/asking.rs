@@ -14,7 +14,8 @@ use crate::study::stimulus::Stimulus;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum View {
-    /// The next trial, or the matching of the next texture, begins when a key is pressed.
+    /// The participant must press a key to begin the next trial, or the matching of the next
+    /// texture.
     Ready {
         /// The phase that begins.
         phase: Phase,
@@ -30,8 +31,8 @@ pub enum View {
         /// What happened in the trial, for example that the motion left its target.
         notice: Option<String>,
     },
-    /// A texture plays. Either its level rises until the participant feels it, or its gain is
-    /// matched.
+    /// A texture plays. The participant either raises its level until the texture can be felt, or
+    /// matches its gain.
     Matching {
         texture: String,
         /// The method, which determines the available keys.
@@ -58,7 +59,7 @@ const GUARD: Duration = Duration::from_millis(300);
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Returns the time after the view is shown during which keys must be ignored, because they
+    /// Returns how long keys must be ignored after the view is shown. Keys pressed in this time
     /// were meant for the previous view.
     pub fn guard(&self) -> Duration {
         match self {
@@ -74,14 +75,14 @@ pub enum Key {
     Digit(u8),
     /// A key of the gain matching.
     Gain(GainKey),
-    /// The key that begins or continues.
+    /// The key that begins a trial or continues the session.
     Go,
-    /// The key that ends the session. It can be continued later.
+    /// The key that ends the session. The participant can continue the session later.
     Quit,
 }
 
-/// The connection to the participant, who may be simulated. It must ignore keys that are pressed
-/// within [`View::guard`].
+/// The connection to the participant, who may be simulated. After a view is shown, the connection
+/// must ignore keys for the time [`View::guard`].
 pub trait Asker {
     /// Shows a view, and drops keys that were pressed before. So far, `done` of `all` trials have
     /// been rated.
@@ -116,7 +117,7 @@ pub struct Playback {
     pub drive_v: Option<f64>,
     /// Levels of the samples that were written to the device.
     pub output: OutputLevels,
-    /// RMS in the assets' unit that corresponds to the drive.
+    /// RMS, in the assets' unit, that corresponds to the drive of the device.
     pub reference_rms: f64,
     /// The recording of the felt force, which is already on disk.
     pub felt: Option<FeltFile>,

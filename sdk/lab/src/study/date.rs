@@ -7,8 +7,8 @@ const ERA_DAYS: u64 = 146_097;
 /// Days from 0000-03-01 to 1970-01-01.
 const TO_1970: u64 = 719_468;
 
-/// Converts milliseconds since 1970 to date and time in UTC, to the second: `2026-11-25T10:25:25Z`
-/// (ISO 8601).
+/// Converts milliseconds since 1970 to date and time in UTC, with a precision of one second, in the
+/// form `2026-11-25T10:25:25Z` (ISO 8601).
 ///
 /// ```
 /// assert_eq!(htex_lab::study::utc(951_827_696_789), "2000-02-29T12:34:56Z");

@@ -28,23 +28,23 @@ const COLUMNS: [&str; 11] = [
 /// Ratings of all participants in a folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// The table as CSV: one participant after the other, and for each the ratings in the order of
-    /// the trials.
+    /// The table as CSV. The rows are sorted by participant, and the ratings of a participant are
+    /// in the order of the trials.
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
     /// Number of trials whose motion left the study's target, as stated in the column `off_target`.
     pub off_target: usize,
-    /// Warnings that an analysis must consider: incomplete sessions, trials off their target, and
-    /// devices with different settings.
+    /// Warnings that an analysis must consider: incomplete sessions, trials whose motion left the
+    /// study's target, and devices with different settings.
     pub warnings: Vec<String>,
-    /// Participants with incomplete sessions, each as a sentence. The warnings contain these
+    /// A sentence for each participant whose session is incomplete. `warnings` also contains these
     /// sentences.
     pub incomplete: Vec<String>,
 }
 
-/// How the table of spectra treats trials whose speed or force left the study's target. Their
-/// ratings are always exported.
+/// How the table of spectra treats trials whose speed or force left the study's target. The ratings
+/// of such trials are always exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
@@ -55,13 +55,14 @@ pub enum OffTarget {
     LeaveOut,
 }
 
-/// Reads all answers in a folder. Training is left out. With several attributes, `attribute`
-/// selects the one whose ratings are exported.
+/// Reads all answers in a folder. The ratings of the training are left out. If the answers have
+/// several attributes, `attribute` selects the attribute whose ratings are exported.
 ///
 /// # Errors
-/// [`LabError::NoAnswers`] if the folder has no answers. [`LabError::OtherVersion`] if they belong
-/// to several versions of a study, or to both simulated and real participants.
-/// [`LabError::Attribute`] if the attribute is not in the answers. Errors of reading.
+/// [`LabError::NoAnswers`] if the folder has no answers. [`LabError::OtherVersion`] if the answers
+/// belong to several versions of a study, or to both simulated and real participants.
+/// [`LabError::Attribute`] if the attribute is not in the answers. Other errors if a file cannot be
+/// read.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, LabError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);

@@ -1,11 +1,11 @@
 //! Records the force on the participant's finger while a trial plays. The source is read in its own
 //! thread.
 //!
-//! The source is opened anew for each trial, so that a trial's recording does not depend on earlier
-//! ones.
+//! The source is opened anew for each trial, so that the recording of a trial does not depend on
+//! earlier trials.
 //!
-//! If the device and the source deliver the same bytes, a session that was killed and continued
-//! writes the same files as a session without interruption.
+//! Suppose that a session is killed and then continued. If the source delivers the same samples,
+//! the session writes the same files as a session without interruption.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -55,11 +55,11 @@ pub struct FeltSetup {
     /// Speed and normal force of the study's motion, if it is a single motion.
     pub target: Exploration,
     pub format: Format,
-    /// Program and version that records.
+    /// Name and version of the program that records.
     pub tool: String,
-    /// Whether a recording begins with the source's first sample, instead of the first sample that
-    /// is played. This is needed for trials that are not played in real time, because they have no
-    /// common clock with the source.
+    /// Whether a recording begins with the first sample of the source, instead of when the first
+    /// played sample reaches the display. Trials that are not played in real time need this
+    /// setting, because they have no common clock with the source.
     pub is_fast: bool,
 }
 
@@ -127,7 +127,8 @@ impl Felt {
         })
     }
 
-    /// Starts the source for a trial. The recording leaves out everything before [`Self::sounds`].
+    /// Starts the source for a trial. The recording leaves out all samples before the time that
+    /// [`Self::sounds`] states.
     ///
     /// # Errors
     /// If the source cannot be opened or started, or has another sample rate than before.
@@ -215,8 +216,8 @@ impl Felt {
         running.is_some_and(|running| running.shared.failed.load(Ordering::Acquire))
     }
 
-    /// Waits for the end of the recording, and writes the recording and its JSON. Returns when both
-    /// are on disk. Returns `None` if nothing was recorded.
+    /// Waits for the end of the recording, and writes the recording and its JSON. Returns only
+    /// after both files are on disk. Returns `None` if nothing was recorded.
     ///
     /// # Errors
     /// The errors of the source, and [`LabError::File`].

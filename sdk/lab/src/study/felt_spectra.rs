@@ -33,8 +33,8 @@ pub struct Reference {
 /// The table of spectra.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeltSpectra {
-    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz. It
-    /// ends with a line for each real texture.
+    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz. The
+    /// last lines contain the spectra of the real textures, one line for each texture.
     pub csv: String,
     /// Number of recordings that were read.
     pub recordings: usize,
@@ -46,11 +46,11 @@ pub struct FeltSpectra {
 }
 
 impl Reference {
-    /// Reads the spectrum of a recording of a real texture. If `strict` is true, any problem of its
-    /// signals is an error.
+    /// Reads the spectrum of a recording of a real texture. If `strict` is true, any problem of the
+    /// recording's signals is an error.
     ///
     /// # Errors
-    /// [`LabError::File`] if it cannot be read as a texture from 20 to 1000 Hz.
+    /// [`LabError::File`] if no texture spectrum from 20 to 1000 Hz can be read from the recording.
     pub fn from_recording(
         take: &Take,
         file: &Path,
@@ -61,8 +61,8 @@ impl Reference {
         Ok(Self::average(&[reading.spectra], options).map_err(FileError::in_file(file))?)
     }
 
-    /// Returns the recorded spectrum that an asset stores, at the condition nearest to a motion.
-    /// Without a known motion, this is the first condition.
+    /// Returns the recorded spectrum that an asset stores, at the condition nearest to a motion. If
+    /// the motion is unknown, returns the spectrum at the first condition.
     ///
     /// # Errors
     /// [`LabError::File`] if the asset cannot be read or does not have the spectrum.
@@ -105,10 +105,10 @@ impl Reference {
     }
 }
 
-/// Computes the spectra of a folder of answers. For each participant, texture and model, the
-/// recordings of all trials are read and averaged, in the same way as `htex fit` reads recordings
-/// of one condition. `off_target` states how to treat trials off the study's target. `recorded` has
-/// the spectra of the real textures by name.
+/// Computes the spectra of a folder of answers. For each combination of participant, texture and
+/// model, reads the recordings of all trials and averages their spectra, in the same way as `htex
+/// fit` does for several recordings of one condition. `off_target` states how to treat trials whose
+/// motion left the study's target. `recorded` contains the spectra of the real textures by name.
 ///
 /// # Errors
 /// The errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no recordings.

@@ -37,11 +37,12 @@ pub struct Study {
     /// Name of the study.
     #[serde(default)]
     pub name: String,
-    /// Seed for the orders and for the samples that are played. The same seed gives the same study
-    /// on every machine.
+    /// Seed for the orders of the trials and for the played samples. The same seed gives the same
+    /// orders and samples on every machine.
     #[serde(default)]
     pub seed: u64,
-    /// The participants: either their number, so that they are named P01, P02, …, or their names.
+    /// The participants: either their number or their names. If only the number is given, the names
+    /// are P01, P02, ….
     #[serde(default)]
     pub participants: Participants,
     /// The textures.
@@ -51,9 +52,9 @@ pub struct Study {
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
-    /// An additional model, which should be the best available one (`bands`). It is played and
-    /// rated like the other models, and marked in the results. A participant who rates it low is
-    /// unreliable.
+    /// An additional model that serves as a check of the participants. Choose the best available
+    /// model (`bands`). The model is played and rated like the other models, and is marked in the
+    /// results. A participant who gives it low ratings is unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
     /// Number of trials for each texture in each model.
@@ -71,8 +72,8 @@ pub struct Study {
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
     /// Level at which each texture starts in the training and in the gain matching, decibels
-    /// relative to the maximum. From there the level rises until the participant feels the texture.
-    /// It never rises unless the participant asks for it.
+    /// relative to the maximum. From this level, the participant raises the level with key presses
+    /// until the texture can be felt. The level never rises without a key press.
     #[serde(default = "start")]
     #[schemars(range(min = -120, max = 0))]
     pub start_db: f64,
@@ -85,15 +86,15 @@ pub struct Study {
     /// The scale for all ratings.
     #[serde(default)]
     pub scale: Scale,
-    /// What is rated after each trial, in this order.
+    /// The attributes that the participant rates after each trial, in this order.
     #[serde(default = "similarity")]
     #[schemars(length(min = 1, max = 32))]
     pub attributes: Vec<Attribute>,
-    /// Rests during the testing. Without it, there are none.
+    /// Rests during the testing. If this key is absent, there are no rests.
     #[serde(default)]
     pub rests: Option<Rests>,
-    /// White noise in headphones that masks the sound of a texture while it is felt. The page plays
-    /// it. Without it, there is none.
+    /// White noise in headphones that masks the sound of a texture while it is felt. The web page
+    /// of the study plays the noise. If this key is absent, there is no noise.
     #[serde(default)]
     pub masking_noise: Option<MaskingNoise>,
     /// The motion of the finger, as in a scene: constant, a trace, or `live`.
@@ -134,18 +135,20 @@ pub enum Order {
     /// All trials in random order.
     #[default]
     Random,
-    /// Each repetition is a block, in which every texture occurs once in every model, in random
-    /// order.
+    /// The trials are in blocks, one block for each repetition. In a block, every texture occurs
+    /// once in every model, in random order.
     BlockedByRepetition,
     /// All trials of a texture follow each other. Both the textures and the trials of each texture
-    /// are in random order. With this order, the experimenter must exchange the real texture least
-    /// often.
+    /// are in random order. In this order, the experimenter exchanges the real texture as rarely as
+    /// possible.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square. In as many rows as there are conditions, each
-    /// condition occurs once at each position.
+    /// Each repetition is a row of a Latin square. A condition of the square is a texture in a
+    /// model. Over as many rows as there are conditions, each condition occurs once at each
+    /// position.
     LatinSquare,
-    /// Each repetition is a row of a Williams square (Williams 1949). It is a Latin square in
-    /// which, over all rows, each condition also follows every other condition equally often.
+    /// Each repetition is a row of a Williams square (Williams 1949). A Williams square is a Latin
+    /// square in which, over all rows, each condition also follows every other condition equally
+    /// often.
     WilliamsSquare,
 }
 
@@ -155,7 +158,7 @@ pub enum Order {
 pub enum Phase {
     /// Practice trials, whose ratings are not results.
     Training,
-    /// The strength of each texture is matched to the real one.
+    /// The participant matches the strength of each texture to the strength of the real texture.
     Gain,
     /// The rated trials.
     Testing,
@@ -165,19 +168,20 @@ pub enum Phase {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Training {
-    /// Number of trials, drawn from the trials of the testing.
+    /// Number of practice trials. They are drawn from the trials of the testing.
     #[serde(default = "five")]
     #[schemars(range(min = 1, max = 1000))]
     pub trials: u32,
 }
 
-/// Settings of the phase `gain`: each texture is matched in one model, and the gain is used for the
-/// other models (paper, "Gain matching task").
+/// Settings of the phase `gain`. The participant matches each texture in one model, and the
+/// resulting gain is also used for the other models (paper, "Gain matching task").
 ///
-/// The paper starts at the maximum. Here the level first rises from `start_db` until the
-/// participant feels the texture, and the matching starts from that level. A gain is in decibels
-/// relative to the maximum. The maximum is `device.drive_v`, `gain_db` or `level_dbfs`, or else a
-/// display's limit, 0 dB or -18 dBFS.
+/// In the paper, the matching starts at the maximum. In htex, the participant first raises the
+/// level from `start_db` until the texture can be felt, and the matching starts at that level. A
+/// gain is in decibels relative to the maximum. The maximum depends on the device: for a display it
+/// is `device.drive_v` (default: the display's limit), for sound `level_dbfs` (default: -18 dBFS),
+/// and for all other devices `gain_db` (default: 0 dB).
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Matching {
@@ -187,11 +191,11 @@ pub struct Matching {
     /// How the gain is found.
     #[serde(default)]
     pub method: GainMethod,
-    /// Level change by a normal key, decibels.
+    /// Level change by a key for a normal step, decibels.
     #[serde(default = "one_db")]
     #[schemars(range(min = 0.01, max = 20))]
     pub step_db: f64,
-    /// Large level change, decibels. It is used by the large keys, and by a staircase before its
+    /// Level change by a key for a large step, decibels. A staircase also uses this step before its
     /// first reversal.
     #[serde(default = "four_db")]
     #[schemars(range(min = 0.01, max = 40))]
@@ -200,8 +204,8 @@ pub struct Matching {
     #[serde(default = "lowest")]
     #[schemars(range(min = -120, max = -1))]
     pub lowest_db: f64,
-    /// Number of reversals after which a staircase ends. The gain is the mean of all except the
-    /// first two.
+    /// Number of reversals after which a staircase ends. The resulting gain is the mean of the
+    /// gains at all reversals except the first two.
     #[serde(default = "six")]
     #[schemars(range(min = 3, max = 50))]
     pub reversals: u32,
@@ -212,13 +216,15 @@ pub struct Matching {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
-    /// Only downwards, until the participant accepts the texture.
+    /// The participant lowers the gain until the strength matches, and then accepts it. The gain
+    /// cannot go up.
     #[default]
     Descending,
-    /// Up and down, until the participant accepts the texture.
+    /// The participant moves the gain up and down until the strength matches, and then accepts it.
     Adjustment,
-    /// The participant says whether the texture should be stronger or weaker. Steps are large until
-    /// the first reversal, then small (one up, one down).
+    /// The participant says whether the texture should be stronger or weaker. After each answer,
+    /// the gain moves one step in this direction. The steps are large until the first reversal and
+    /// small after it.
     Staircase,
 }
 
@@ -273,7 +279,7 @@ pub struct Rests {
     pub seconds: f64,
 }
 
-/// White noise that masks the sound of a texture and its display.
+/// White noise that masks the sound that the display makes while a texture plays.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct MaskingNoise {

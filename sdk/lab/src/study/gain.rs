@@ -9,22 +9,22 @@ use crate::study::file::{GainMethod, Matching};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainKey {
-    /// Stronger by a step. In a staircase: it should be stronger.
+    /// Stronger by a step. In a staircase, the answer that the texture should be stronger.
     Stronger,
     /// Stronger by a large step.
     MuchStronger,
-    /// Weaker by a step. In a staircase: it should be weaker.
+    /// Weaker by a step. In a staircase, the answer that the texture should be weaker.
     Weaker,
     /// Weaker by a large step.
     MuchWeaker,
-    /// While the level rises: the participant feels the texture. During the matching: the texture
-    /// matches the real one.
+    /// While the level rises, this key means that the participant feels the texture. During the
+    /// matching, it means that the texture matches the real texture.
     Accept,
 }
 
 /// Finds the level of one texture. The level rises from a weak start until the participant feels
-/// the texture. From there, it is matched to the real texture. Levels are in decibels relative to
-/// the maximum.
+/// the texture. From this level on, the participant matches the texture to the real texture. Levels
+/// are in decibels relative to the maximum.
 ///
 /// ```
 /// use htex_lab::study::{GainKey, Match, Matching};
@@ -75,13 +75,13 @@ impl Match {
         }
     }
 
-    /// Starts a rise from `start_db` without a matching. Its result is the level at which the
+    /// Starts a rise from `start_db` without a matching. The result is the level at which the
     /// participant feels the texture. The step sizes come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }
 
-    /// Returns the current gain. When the gain is found, this is the result.
+    /// Returns the current gain. After the gain is found, the current gain is the result.
     pub fn gain_db(&self) -> f64 {
         self.gain_db
     }
@@ -101,8 +101,8 @@ impl Match {
         self.settings.method
     }
 
-    /// Returns whether the key has a meaning now. While the level rises, all keys have one: a
-    /// request for a weaker level is never refused.
+    /// Returns whether the key has a meaning now. While the level rises, all keys have a meaning,
+    /// so a participant can always ask for a weaker level.
     pub fn takes(&self, key: GainKey) -> bool {
         takes(self.settings.method, self.is_rising(), key)
     }

@@ -17,13 +17,13 @@ pub(crate) const VERSION: &str = "1.0";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Line {
-    /// The first line.
+    /// The first line of the file.
     Header(Box<Header>),
     /// The start of a session. A session with a simulated clock has no such line, because this
     /// clock has no date.
     Session(SessionStart),
-    /// A key press while the level of a texture rises until the participant feels it, in the
-    /// training and in the gain matching.
+    /// A key press while the participant raises the level of a texture until it can be felt, in the
+    /// training or in the gain matching.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
@@ -57,18 +57,18 @@ pub struct Header {
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
     pub files: BTreeMap<String, String>,
     pub device: DeviceUsed,
-    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`). Absent with a
-    /// simulated clock.
+    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`). Absent if the
+    /// clock is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub begun: Option<String>,
     /// Number of ratings in a complete session.
     pub ratings: usize,
-    /// The source from which the felt force is recorded. Absent if it is not recorded.
+    /// The source from which the felt force is recorded. Absent if the felt force is not recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<SourceUsed>,
     /// The program that began the file.
     pub tool: String,
-    /// Seed and rule of a simulated participant. Absent for people.
+    /// Seed and rule of a simulated participant. Absent if the participant is a person.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<Simulated>,
 }
@@ -77,9 +77,9 @@ pub struct Header {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Simulated {
-    /// Seed for its ratings.
+    /// Seed for the ratings of the simulated participant.
     pub seed: u64,
-    /// The rule by which it rates.
+    /// The rule by which the simulated participant rates.
     pub rule: String,
 }
 
@@ -89,7 +89,7 @@ pub struct Simulated {
 pub struct SessionStart {
     /// Date and time in UTC: `2026-11-25T10:25:25Z`.
     pub date: String,
-    /// Time, milliseconds, as in ratings.
+    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     pub device: DeviceUsed,
     /// Program and version.
@@ -106,9 +106,9 @@ pub struct DeviceUsed {
     /// Profile of the device; empty if none is used.
     pub profile: String,
     /// All settings of the device, such as the gain of an amplifier, including those from the
-    /// profile and the defaults. Two kinds of settings are left out: names of files to which a
-    /// trial is played; and `buffer_ms` if the motion is not live, because then nobody feels how
-    /// long samples wait.
+    /// profile and the defaults. Two kinds of settings are left out. The first are the names of
+    /// files to which a trial is played. The second is `buffer_ms` if the motion is not live: the
+    /// length of the buffer then makes no difference that a participant could feel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest absolute value that the device accepts, in its unit (volts for a display). Absent
@@ -183,7 +183,7 @@ pub struct SourceUsed {
     pub format: Format,
 }
 
-/// A recording of what was felt in a trial.
+/// A recording of the force on the participant's finger in a trial.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FeltFile {
@@ -192,12 +192,12 @@ pub struct FeltFile {
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
-    /// How speed or force left the study's motion by more than 10 %, as phrases. Absent if they did
-    /// not leave it, or if the study sets no target.
+    /// How the speed or the force differed from the study's motion by more than 10 %, as phrases.
+    /// Absent if no difference was larger, or if the study sets no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
     /// Whether speed or force was measured and compared with the study's motion. Absent if neither
-    /// was.
+    /// the speed nor the force was compared.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub compared: bool,
 }
@@ -228,28 +228,27 @@ pub struct Answer {
     pub rating: u8,
     /// Time from the question to the answer, milliseconds.
     pub response_ms: u64,
-    /// Time of the answer, milliseconds since 1970 in UTC, or since the start of the session with a
-    /// simulated clock.
+    /// Time of the answer, milliseconds since 1970 in UTC. If the clock is simulated, the
+    /// milliseconds count from the start of the session.
     pub at_ms: u64,
     /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without gain
     /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
-    /// Drive of the display at which it was played, volts.
+    /// Drive of the display at which the stimulus was played, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// Levels that the device was given. Absent in files of an earlier htex.
+    /// Levels of the samples that were written to the device. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How many times the trial was stopped before its end, for any reason, since the last line
-    /// that is not a stop.
+    /// Number of lines of the kind `stopped` between this line and the last line of another kind:
+    /// how many times the trial was stopped before its end, for any reason.
     #[serde(default)]
     pub stops: u32,
-    /// How many times the trial was begun before, but not played to its end because the device ran
-    /// out of samples.
+    /// How many earlier attempts of the trial failed because the device ran out of samples.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub repeats: u32,
-    /// The recording of what was felt. Absent without a source.
+    /// The recording of the felt force. Absent if there is no source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub felt: Option<FeltFile>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -264,22 +263,24 @@ pub struct GainPress {
     pub key: GainKey,
     /// The gain after the key press, decibels relative to the maximum.
     pub gain_db: f64,
-    /// Whether this gain is used for the texture from now on.
+    /// Whether the matching ended with this key press, so that `gain_db` is the gain of the texture
+    /// from now on.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub found: bool,
     /// Drive of the display at which the texture was felt before the key press, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// Levels that the device was given before the key press. Absent in files of an earlier htex.
+    /// Levels of the samples that were written to the device before the key press. Absent in files
+    /// of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How many times the texture was stopped before the key press. The stop by the previous key
-    /// press does not count.
+    /// How many times the texture was stopped between the previous key press and this one. The stop
+    /// by the previous key press itself does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS in the assets' unit that corresponds to this drive.
+    /// RMS, in the assets' unit, that corresponds to the drive of the device.
     pub reference_rms: f64,
-    /// Time, milliseconds, as in ratings.
+    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
@@ -297,21 +298,21 @@ pub struct Rise {
     pub key: GainKey,
     /// The level after the key press, decibels relative to the maximum.
     pub gain_db: f64,
-    /// Whether the participant feels the texture at this level.
+    /// Whether the participant stated with this key press that the texture can be felt.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub found: bool,
     /// Drive of the display before the key press, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// Levels that the device was given before the key press.
+    /// Levels of the samples that were written to the device before the key press.
     pub output: OutputLevels,
-    /// How many times the texture was stopped before the key press. The stop by the previous key
-    /// press does not count.
+    /// How many times the texture was stopped between the previous key press and this one. The stop
+    /// by the previous key press itself does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS in the assets' unit that corresponds to this drive.
+    /// RMS, in the assets' unit, that corresponds to the drive of the device.
     pub reference_rms: f64,
-    /// Time, milliseconds, as in ratings.
+    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
@@ -327,8 +328,8 @@ pub struct OutputLevels {
     pub peak: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Direct component: the largest absolute value of the mean over any 100 ms. Silence is assumed
-    /// before the start.
+    /// Direct component: the largest absolute value of the mean over any 100 ms. The time before
+    /// the start counts as silence.
     pub direct: f64,
     /// Length, seconds.
     pub duration_s: f64,
@@ -349,16 +350,16 @@ pub struct Stop {
     /// Drive of the display, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// Levels that the device was given. Absent if the device was not opened.
+    /// Levels of the samples that were written to the device. Absent if the device was not opened.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// Time, milliseconds, as in ratings.
+    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
 }
 
-/// Why something was stopped before its end.
+/// Why a stimulus was stopped before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
@@ -381,7 +382,7 @@ impl Line {
     /// Parses a line.
     ///
     /// # Errors
-    /// A text that states what is wrong: the text is not a line of answers, has unknown keys or
+    /// A text that states what is wrong: the line is not a line of answers, has unknown keys or
     /// invalid values, or is a header of another version.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;

@@ -280,7 +280,8 @@ pub enum LabError {
 }
 
 impl LabError {
-    /// Returns whether a setting or an argument has a value that cannot be used.
+    /// Returns whether the cause of the error is a setting or an argument with a value that cannot
+    /// be used.
     pub fn is_usage(&self) -> bool {
         matches!(
             self,

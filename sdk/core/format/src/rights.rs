@@ -117,7 +117,7 @@ impl Rights {
         Self::new(after(LICENSE, text), after(AUTHOR, text))
     }
 
-    /// Returns these rights, with a missing licence or a missing author replaced from `other`.
+    /// Returns these rights. A missing licence or a missing author is taken from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { license: self.license.or(other.license), author: self.author.or(other.author) }

@@ -1,8 +1,8 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
 //! A native library runs with all the rights of this program, so the host loads only libraries that
-//! the user named or put into a plugin folder. The host never unloads a library, because voices and
-//! tables contain pointers into the library.
+//! the user named or put into a plugin folder. The host never unloads such a library, because
+//! voices and tables contain pointers into it.
 
 use std::path::Path;
 

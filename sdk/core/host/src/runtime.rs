@@ -13,7 +13,8 @@ use htex_model::{
 use crate::raw::{RawModel, RawVoice};
 use crate::{HostError, MOTION_EXTENSION};
 
-/// A model that is an object. Implement this trait if the model is not known at compile time.
+/// A model that is a Rust object instead of a type. Implement this trait if the model is not known
+/// at compile time.
 ///
 /// Units and arguments are the same as in [`htex_model::Model`], and the host checks arguments
 /// before each call in the same way. Panics become errors.

@@ -1,4 +1,4 @@
-//! Status codes, and the error that carries one.
+//! Status codes of calls, and the error type, which contains a status code and a message.
 
 use alloc::string::String;
 

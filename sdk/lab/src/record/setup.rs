@@ -36,7 +36,7 @@ pub struct Setup {
     pub tolerance: f64,
     /// Requirements that a take must meet to be accepted.
     pub required: Requirements,
-    /// Largest number of takes in one session.
+    /// Largest number of takes that a session tries until one of them keeps to its target.
     pub attempts: u32,
     pub format: Format,
     /// Name and version of the program, for the JSON next to a recording.

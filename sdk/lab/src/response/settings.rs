@@ -37,8 +37,8 @@ pub struct ResponseSettings {
     pub high_hz: f64,
 
     /// Count the input as overloaded where its magnitude reaches this value. By default, four equal
-    /// samples in a row at the highest or lowest value count as an overload of hits; the input of a
-    /// continuous drive is not checked
+    /// samples in a row at the highest or lowest value of a hit count as an overload, and the input
+    /// of a continuous drive is not checked
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 

@@ -28,8 +28,7 @@ const COLUMNS: [&str; 11] = [
 /// Ratings of all participants in a folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// The table as CSV. The rows are sorted by participant, and the ratings of a participant are
-    /// in the order of the trials.
+    /// The table as CSV. The rows of one participant follow each other, in the order of the trials.
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,

@@ -36,14 +36,14 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long = "high", value_name = "HZ", default_value_t = 1000.0))]
     pub high_hz: f64,
 
-    /// Count the input as overloaded where its magnitude reaches this value. By default, four equal
-    /// samples in a row at the highest or lowest value of a hit count as an overload, and the input
-    /// of a continuous drive is not checked
+    /// Count the input as overloaded where its magnitude reaches this value. By default, a hit is
+    /// overloaded if it has four equal samples in a row at the input's highest or lowest value, and
+    /// the input of a continuous drive is not checked
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
     /// Count the output as overloaded where its magnitude reaches this value. By default, four
-    /// equal samples in a row at the highest or lowest value count as an overload
+    /// equal samples in a row at the output's highest or lowest value count as an overload
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 

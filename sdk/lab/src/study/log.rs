@@ -1,5 +1,5 @@
-//! The file with the answers of one participant. It is only appended to, and each answer is on disk
-//! before the next trial.
+//! The file with the answers of one participant. Lines are only appended to this file. Each answer
+//! is on disk before the next trial begins.
 
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -19,7 +19,7 @@ pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
     folder.join(format!("{participant}.jsonl"))
 }
 
-/// An open file of answers. It stays locked until it is dropped.
+/// An open file of answers. The file stays locked until the `Log` is dropped.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
@@ -29,17 +29,18 @@ pub struct Log {
 }
 
 impl Log {
-    /// Opens the file of a session's answers, or creates it. Also returns its lines without the
+    /// Opens the file of a session's answers, or creates the file. Also returns the lines after the
     /// header.
     ///
     /// Opening does not change an existing file. If a crash left the last line incomplete, the
-    /// first [`Self::append`] removes it. By then it is certain that the header and all whole lines
-    /// belong to this session. A link is never followed.
+    /// first [`Self::append`] removes this line. The line is not removed earlier because the caller
+    /// must first check that the whole lines belong to this session. A symbolic link is never
+    /// followed.
     ///
     /// # Errors
     /// [`LabError::OtherVersion`] if the file has another header. [`LabError::Busy`] while another
-    /// program has the file open. [`LabError::Line`] if a line is damaged. Errors of the file
-    /// system, also if the path is a link or a pipe.
+    /// program has the file open. [`LabError::Line`] if a line is damaged. [`LabError::File`] for
+    /// errors of the file system, or if the path is a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), LabError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
@@ -74,8 +75,8 @@ impl Log {
     /// Appends a line and returns once it is on disk.
     ///
     /// # Errors
-    /// [`LabError::File`]. The line may then be incomplete. It is removed when the session
-    /// continues.
+    /// [`LabError::File`]. The line in the file may then be incomplete. An incomplete line is
+    /// removed when the session continues.
     pub fn append(&mut self, line: &Line) -> Result<(), LabError> {
         let text = text(line).writing(&self.path)?;
         let synced = self.whole_lines().and_then(|()| {
@@ -196,8 +197,8 @@ pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a s
 }
 
 impl Header {
-    /// Creates the header of a participant's session. `path` is the study's file. The header has
-    /// hashes of this file and of all files that it names.
+    /// Creates the header of a participant's session. `path` is the study file. The header contains
+    /// hashes of the study file and of all files that the study names.
     ///
     /// # Errors
     /// [`LabError::File`] if one of the files cannot be read.

@@ -1,25 +1,27 @@
 //! Rating studies: people feel textures through a device and rate each trial.
 //!
-//! A study is described by a file, `study.toml` ([`Study`]). The file determines its [`Plan`],
-//! which is the order of trials for every participant. A [`Session`] takes one participant through
-//! the plan and appends each answer to a file before the next trial begins. Everything else, such
-//! as the table of ratings ([`export`]), is computed from these files.
+//! The file `study.toml` describes a study ([`Study`]). This file determines the [`Plan`], which is
+//! the order of trials for every participant. A [`Session`] takes one participant through the plan
+//! and appends each answer to a file before the next trial begins. Everything else, such as the
+//! table of ratings ([`export`]), is computed from `study.toml` and the files of answers.
 //!
 //! The defaults come from the study in the paper (Methods, "Experiment"): 14 participants, five
 //! models, five repetitions, trials of 10 s, training, gain matching with AR, and similarity from 0
-//! "Different" to 6 "Same". There is one difference: the paper starts at the maximum voltage, but
-//! here each texture starts weak and rises until the participant feels it.
+//! "Different" to 6 "Same". There is one difference: in the paper, textures started at the maximum
+//! voltage. Here each texture starts weak, and its level rises until the participant feels the
+//! texture.
 //!
 //! From a study to ratings:
 //!
-//! 1. `read`: reads `study.toml` and checks the files it names. Problems become findings.
-//!    Motion, device and assets are checked by the rules of scenes.
-//! 2. `plan`: computes the order of trials for every participant, only from the file.
-//! 3. `session`: takes one participant through the plan. The same function updates the `progress`,
-//!    whether a line is read or recorded. `log` appends a line to the file and flushes it to disk.
+//! 1. `read`: reads `study.toml` and checks the files it names. Problems become findings. The rules
+//!    for scenes also apply to a study's motion, device and assets.
+//! 2. `plan`: computes the order of trials for every participant from `study.toml` alone.
+//! 3. `session`: takes one participant through the plan. One function updates the `progress`, both
+//!    for lines read from the file and for lines just recorded. `log` appends a line to the file
+//!    and flushes the line to disk.
 //! 4. `run`: plays trials, shows views and asks questions, through three traits: a rig (renderer
-//!    and device), an asker (terminal or page) and a clock. `felt` records a source while a trial
-//!    plays, with the reader and the writer of guided recordings.
+//!    and device), an asker (terminal or page) and a clock. `felt` records the signal of a sensor
+//!    while a trial plays. It uses the same reader and writer as guided recordings.
 //! 5. `export`: makes the table of all ratings. `felt_spectra`: makes the table with the spectra of
 //!    the felt forces.
 

@@ -1,7 +1,7 @@
 //! The page of a session ([`crate::page`]), which asks the participant.
 //!
-//! Each view has a number, and an answer names the number of its view. So a second press of a key,
-//! or a press for a view that is no longer shown, does not count as an answer.
+//! Each view has a number, and an answer contains the number of the view that it answers. A second
+//! press of a key is therefore not counted, nor is a press for a view that is no longer shown.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -25,13 +25,13 @@ pub struct PageOptions {
     /// Port; 0 means any free port.
     pub port: u16,
     pub title: String,
-    /// RMS level of the masking noise, decibels relative to full scale.
+    /// RMS level of the masking noise, decibels relative to full scale. `None` plays no noise.
     pub noise_dbfs: Option<f64>,
-    /// Size of a pixel of the page, mm, if the page reports the finger's motion.
+    /// Size of a pixel of the page, mm. If `None`, the page does not report the finger's motion.
     pub touch_mm_per_px: Option<f64>,
 }
 
-/// Motion of the finger on the page.
+/// Motion of the finger that touches the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TouchMotion {
     /// Speed, mm/s; negative to the left; NaN if the page did not report one.
@@ -40,7 +40,7 @@ pub struct TouchMotion {
     pub is_down: bool,
 }
 
-/// The finger on a page.
+/// Handle from which the motion of the finger on a page is read.
 #[derive(Clone)]
 pub struct Touch(Arc<PageState>);
 
@@ -53,7 +53,7 @@ impl Touch {
     }
 }
 
-/// A page that is served as long as this value lives.
+/// A session's page. It is served until this value is dropped.
 pub struct Page {
     asked: Arc<PageState>,
     served: LocalPage,
@@ -85,7 +85,7 @@ impl Page {
     /// Serves the page on this machine.
     ///
     /// # Errors
-    /// [`LabError::Page`] if the port is taken or there are no random numbers.
+    /// [`LabError::Page`] if the port is taken or the system provides no random numbers.
     pub fn open(options: PageOptions) -> Result<Self, LabError> {
         let port = options.port;
         let asked = Arc::new(PageState(Mutex::new(State::new(options))));
@@ -96,7 +96,7 @@ impl Page {
         self.served.address()
     }
 
-    /// Returns the finger on the page.
+    /// Returns a handle from which the motion of the finger on the page is read.
     pub fn touch(&self) -> Touch {
         Touch(Arc::clone(&self.asked))
     }

@@ -6,7 +6,7 @@ use crate::study::Study;
 use crate::study::file::{Order, Phase};
 use crate::study::random::Dice;
 
-/// The order of trials for every participant. Only the study file determines it.
+/// The order of trials for every participant. The order depends only on the study file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// Version of the study's format.
@@ -21,10 +21,10 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParticipantPlan {
     pub participant: String,
-    /// Practice trials; empty without that phase.
+    /// Practice trials; empty if the study has no training phase.
     pub training: Vec<Trial>,
-    /// Textures in the order in which they are matched, all in the study's matching model. Empty
-    /// without that phase.
+    /// Textures in the order in which their gains are matched. All are played in the study's
+    /// matching model. Empty if the study has no gain phase.
     pub gain: Vec<String>,
     /// The rated trials.
     pub trials: Vec<Trial>,
@@ -38,7 +38,7 @@ pub struct Trial {
     pub model: String,
     /// Repetition of this texture with this model, from 1.
     pub repetition: u32,
-    /// Whether the model is the hidden reference.
+    /// Whether the trial's model is the study's hidden reference.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub hidden_reference: bool,
 }

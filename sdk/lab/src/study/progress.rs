@@ -1,7 +1,7 @@
 //! Computes the progress of a session from its plan and the lines of its file.
 //!
-//! Neither the plan nor the progress is stored. So they cannot disagree with the file after a
-//! session was killed.
+//! The plan and the progress are not stored. They are computed from the files, so they agree with
+//! the file of answers even after a session was killed.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -18,8 +18,9 @@ const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 pub enum Step {
     /// A trial is rated by one attribute. The trial is played first, unless it was just played.
     Rate(Phase, Trial, Attribute),
-    /// The level of a texture rises until the participant feels it, before the texture's first
-    /// practice trial, or the texture's gain is matched.
+    /// The participant sets the level of a texture. In training, before the texture's first
+    /// practice trial, the level rises until the participant feels the texture. In the gain phase,
+    /// the participant matches the texture's gain.
     Match {
         phase: Phase,
         texture: String,

@@ -36,8 +36,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a study and checks it, but not the files that it names. If the study cannot be used, adds
-/// a finding with the reason and returns `None`. Never panics.
+/// Reads a study and checks its values. The files that the study names are not checked. If the
+/// study cannot be used, adds a finding with the reason and returns `None`. Never panics.
 pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
     if bytes.len() > MOST_BYTES {
         let message = format!("the study has more than {MOST_BYTES} bytes");
@@ -89,9 +89,9 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     }
 }
 
-/// Checks the files, motion and device of a study by the rules of scenes: each texture is opened in
-/// each model as it will be played. `path` is the study's file. `device` is the device with which
-/// the study runs; without one, the study's own device is checked.
+/// Checks the files, motion and device of a study by the rules for scenes. For this, each texture
+/// is opened with each model, as in the trials. `path` is the study file. `device` replaces
+/// settings of the study's own device; the default value changes nothing.
 pub fn check_files(
     study: &Study,
     path: &Path,

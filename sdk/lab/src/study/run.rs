@@ -25,11 +25,13 @@ const MOST_REPEATS: u32 = 2;
 pub enum SessionEnd {
     /// The session is over.
     Done,
-    /// The session was left before its end. It continues when it is run again.
+    /// The session was interrupted before its end. It continues from there when [`run`] is called
+    /// again.
     Left,
 }
 
-/// Runs a session to its end, or until it is left. Each answer is on disk before the next trial.
+/// Runs a session to its end, or until the participant leaves. Each answer is on disk before the
+/// next trial begins.
 ///
 /// # Errors
 /// [`LabError`], and errors of the rig.

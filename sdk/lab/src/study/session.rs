@@ -35,13 +35,13 @@ pub struct Session<'a> {
 pub struct Presentation {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
-    /// Levels that the device was given.
+    /// Levels of the samples that were written to the device.
     pub output: Option<OutputLevels>,
-    /// How many times the trial was stopped before, for any reason.
+    /// Number of earlier attempts at this trial that were stopped, for any reason.
     pub stops: u32,
-    /// The recording of the felt force, if there is one.
+    /// The file with the force that a sensor recorded during the trial, if it was recorded.
     pub felt: Option<FeltFile>,
-    /// How many times the trial was begun before and ended because the device ran out of samples.
+    /// Number of earlier attempts at this trial that ended because the device ran out of samples.
     pub repeats: u32,
 }
 
@@ -156,7 +156,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns how many times the current stimulus was stopped before.
+    /// Returns how many earlier attempts at the current stimulus were stopped.
     pub fn stops(&self) -> u32 {
         self.progress.stops()
     }
@@ -169,7 +169,7 @@ impl<'a> Session<'a> {
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
 
-    /// Records that a session begins at a date ([`crate::study::utc`]), with its device.
+    /// Records that a session begins, with its date ([`crate::study::utc`]) and device.
     ///
     /// # Errors
     /// [`LabError::File`].
@@ -183,7 +183,7 @@ impl<'a> Session<'a> {
         }))
     }
 
-    /// Records a rating for the current step, and how its trial was played.
+    /// Records a rating for the current step. `Presentation` says how the trial was played.
     ///
     /// # Errors
     /// [`LabError::File`], and [`LabError::Line`] if the current step does not accept this
@@ -222,8 +222,8 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records a key press while a level rises or a gain is matched, and how the texture was played
-    /// before the key.
+    /// Records a key press while a level rises or a gain is matched. Also records how the texture
+    /// was played before the key press.
     ///
     /// # Errors
     /// The errors of [`Self::rate`].

@@ -1,5 +1,5 @@
-//! Simulated participants, to try and to test a study. Every file with their answers states that
-//! they are simulated.
+//! Simulated participants, for trying out and testing a study. Every file with their answers states
+//! that they are simulated.
 
 use crate::study::file::{Phase, Scale};
 use crate::study::gain::{GainKey, Match};
@@ -18,9 +18,9 @@ const NOISE: f64 = 0.1;
 /// Range of the gains that simulated participants accept, dB relative to the maximum.
 const GAIN_DB: (f64, f64) = (-18.0, -2.0);
 
-/// A simulated participant. The larger the nine-band error of the representation, the lower are its
-/// ratings, because this error was the paper's best predictor of similarity. A rating depends only
-/// on the seed, the participant and the trial, not on earlier ratings.
+/// A simulated participant. Representations with a larger nine-band error get lower ratings,
+/// because this error was the paper's best predictor of similarity. A rating depends only on the
+/// seed, the participant and the trial, not on earlier ratings.
 #[derive(Debug, Clone)]
 pub struct SimulatedParticipant {
     seed: u64,

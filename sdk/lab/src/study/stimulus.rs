@@ -1,5 +1,5 @@
-//! The stimulus of a trial: a scene with one surface, and its gain. Also measures the levels that
-//! are written to the device.
+//! The stimulus of a trial: a scene with one surface, and the gain at which it is played. This
+//! module also measures the levels of the samples that are written to the device.
 
 use std::path::Path;
 
@@ -14,29 +14,31 @@ use crate::study::lines::OutputLevels;
 /// full scale.
 const SOUND_DBFS: f64 = -18.0;
 
-/// A texture in a model, and how it is played.
+/// A texture, the model that plays it, and the settings of the playback.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stimulus {
     pub texture: String,
     pub model: String,
     /// Length, seconds. `None` plays until the stimulus is stopped.
     pub seconds: Option<f64>,
-    /// Seed for its random numbers.
+    /// Seed of the playback's random numbers.
     pub seed: u64,
     /// Gain relative to the maximum, decibels. `None` plays at the level that the study's device
     /// sets.
     pub gain_db: Option<f64>,
-    /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are
-    /// `own`.
+    /// Reference RMS that applied when the participant set the gain, in the assets' unit. It is
+    /// used only by devices whose `levels` setting is `own`.
     pub reference_rms: Option<f64>,
-    /// Name of the recording of the felt force, without extension. `None` if it is not recorded.
+    /// File name, without extension, for the recording of the felt force. `None` if this force is
+    /// not recorded.
     pub felt: Option<String>,
-    /// Name of the file to which the stimulus is played, if the device writes files: `rise-vinyl`,
-    /// `training-0003`, `gain-vinyl`, `trial-0017`.
+    /// Name of the file to which the stimulus is written if the device writes files, such as
+    /// `rise-vinyl`, `training-0003`, `gain-vinyl`, `trial-0017`.
     pub file: String,
 }
 
-/// Returns the scene of a texture in a model, as the bytes of a scene file next to the study.
+/// Returns the scene in which a model plays a texture, as the bytes of a scene file. Paths in the
+/// scene are relative to the study's folder.
 pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     let surface = Surface { representation: model.to_owned(), ..Surface::everywhere(asset) };
     let scene = SceneFile {
@@ -53,15 +55,17 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
-/// Returns the drive of a display without a gain, volts: the study's `drive_v` or, without it, the
-/// display's limit.
+/// Returns a display's drive before a gain is applied, volts. This is the study's `drive_v` or, if
+/// the study sets none, the display's limit.
 pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     let is_display = able.quantity == Quantity::DisplayVoltage;
     device.drive_v.or(able.limit).filter(|_| is_display)
 }
 
-/// Sets a gain relative to the maximum on a scene's device: a display's `drive_v` or its limit, the
-/// `gain_db` of other forces, or the level of a sound. Returns the drive of a display, volts.
+/// Applies a gain relative to the maximum to a scene's device. On a display, scales the drive
+/// (`drive_v`, or the display's limit). On a sound device, adds the gain to `level_dbfs`; on all
+/// other devices, to `gain_db`. Returns the drive of a display in volts, and `None` for other
+/// devices.
 pub fn set_gain(
     device: &mut DeviceChoice,
     able: &Capabilities,

@@ -1,5 +1,5 @@
-//! Search for a better fit when a representation has a large band error: other options of its
-//! model, and other models.
+//! Search for a better fit when a representation has a large band error. The search tries other
+//! options of the same model, and other models.
 
 use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};

@@ -28,13 +28,13 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// How much of the difference between each representation and these spectra can be felt, at
-    /// each of the representation's conditions. `None` at a condition that was computed between
-    /// recorded ones, where there is no recording to compare with.
+    /// How much of the difference between each representation and the recorded spectra can be felt:
+    /// one list for each representation, with one value for each of its conditions. The value is
+    /// `None` at a condition that was not recorded but computed between recorded conditions.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
-    /// Notes about the recordings, less severe than warnings: what was left out, and why.
+    /// Notes about the recordings, less severe than warnings. They say what was left out, and why.
     pub notes: Vec<Notice>,
     /// All findings about the recordings, in the order of the recordings.
     pub findings: Vec<RecordingFinding>,
@@ -42,8 +42,8 @@ pub struct FittedAsset {
     pub grid: Option<GridReport>,
 }
 
-/// Fits every model at every condition, measures how well the stored (rounded) parameters agree
-/// with the recordings, and returns the asset.
+/// Fits every model at every condition and returns the asset. Also measures how well the stored
+/// (rounded) parameters agree with the recordings.
 ///
 /// A model that cannot be fitted is left out and listed in `skipped`.
 ///
@@ -138,9 +138,9 @@ fn assemble(
     }
 }
 
-/// Returns an asset with the given models. Each model consists of a representation and the
-/// parameters for each of the representation's conditions. Optional keys of the manifest, such as
-/// the licence and the law, are left out.
+/// Returns an asset with the given models. Each entry of `models` is a representation with its
+/// parameters, one list for each of the representation's conditions. Optional keys of the manifest,
+/// such as the licence and the law, are left out.
 pub fn new_asset(
     name: &str,
     quantity: Quantity,

@@ -1,9 +1,9 @@
 //! Repeatability: how much the spectra of different blocks of time differ within one texture.
 //!
-//! Overlapping windows share samples. If each half consisted of every second window, both halves
-//! would share samples, and their difference would be several times too small. Blocks share no
-//! samples. Each block lasts up to a second, so that the difference between blocks includes the
-//! drift of texture, finger and motion, as far as it shows within a second.
+//! Overlapping windows share samples. If every second window were averaged into one half, both
+//! halves would share samples, and the difference between the halves would be several times too
+//! small. Blocks of time share no samples. Each block lasts up to a second. The difference between
+//! blocks therefore includes the drift of texture, finger and motion within about a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};

@@ -1,5 +1,5 @@
-//! How spectra differ from the spectrum of a recording: the spectra of an asset's representations,
-//! or of another recording.
+//! Compares the spectrum of a recording with other spectra: those of an asset's representations, or
+//! of another recording.
 
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Measure, Quality};
@@ -13,8 +13,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. Measures on samples exist only for representations, because only
-    /// they can be played.
+    /// The measures of agreement. Only representations can be played, so measures on rendered
+    /// samples are missing if the other spectrum is a recording's.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.

@@ -1,5 +1,5 @@
-//! The second stage of a fit: the spectra of recordings at the same speed and force are averaged to
-//! the spectrum of one condition.
+//! The second stage of a fit: averages the spectra of recordings at the same speed and force. The
+//! average is the spectrum of one condition.
 
 use htex_base::finding::{Finding, Findings, Notice};
 use htex_format::{Condition, Contact, Law, Source};
@@ -38,7 +38,7 @@ pub(crate) struct ConditionSpectra {
 /// A finding about one of several recordings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordingFinding {
-    /// The recording's name, as in its warnings.
+    /// The recording's name, as it appears in warnings.
     pub recording: String,
     pub finding: Finding,
 }

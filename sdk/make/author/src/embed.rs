@@ -8,7 +8,7 @@ use htex_host::{LoadedModel, Origin, Registry};
 use crate::AuthorError;
 
 /// Embeds the WASM modules of fitted models into an asset, and signs each with an ed25519 secret
-/// key if a key is given. `registry` must have loaded the models from the same files.
+/// key if a key is given. `registry` must have loaded the models from these same `files`.
 ///
 /// # Errors
 /// See [`AuthorError`].

@@ -43,7 +43,8 @@ pub enum AuthorError {
          choose windows for a recording without back-and-forth sweeps"
     )]
     NoSegments { source_name: String },
-    /// The setup's response is zero or not finite in the band, so spectra cannot be divided by it.
+    /// The frequency response of the recording setup is zero or not finite in the band, so spectra
+    /// cannot be divided by it.
     #[error(
         "setup response: its largest magnitude in the band is {largest:e}; a finite value above 0 is \
          needed at every frequency that is to be divided by it: measure the setup again"
@@ -73,7 +74,8 @@ pub enum AuthorError {
         /// The measured and the requested values.
         comparison: String,
     },
-    /// The recording has errors or warnings, and the caller asked to refuse such recordings.
+    /// The recording has findings that are errors or warnings, and the caller asked to refuse such
+    /// recordings.
     #[error("{source_name}: refused because of findings that are errors or warnings:{}", listed(.findings))]
     Strict {
         source_name: String,
@@ -97,7 +99,7 @@ pub enum AuthorError {
         text: String,
         problem: String,
     },
-    /// The recording lacks the finger's speed or force, which a grid of conditions needs.
+    /// The recording does not contain the finger's speed or force. A grid of conditions needs both.
     #[error(
         "{source_name}: the {what} is not in the file, and a grid of conditions needs it at every sample: name the column of \
          {columns}, or give one {what} for the whole recording, or fit without a grid"
@@ -194,8 +196,8 @@ pub enum AuthorError {
     /// A representation cannot be read or played.
     #[error(transparent)]
     Play(#[from] htex_play::Error),
-    /// Saving an edited asset would lose entries that its manifest does not name, or manifest keys
-    /// that this program does not know.
+    /// Saving an edited asset would lose data: entries of the file that the manifest does not name,
+    /// or keys of the manifest that this program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
     EditLoses { lost: Vec<String> },
     /// The asset and the recording describe different quantities.
@@ -298,12 +300,12 @@ pub enum AuthorError {
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     NoParameters,
-    /// Only some conditions of a texture made by hand have a speed or a force.
+    /// Some conditions of a texture made by hand have a speed or a force, and others have none.
     #[error(
         "some conditions have only a speed or only a force; give both for every condition, or neither"
     )]
     PartialConditions,
-    /// The textures cannot be mixed.
+    /// The two textures cannot be mixed.
     #[error("{a} and {b} cannot be mixed: {problem}")]
     NotMixable {
         a: String,
@@ -317,15 +319,15 @@ pub enum AuthorError {
     )]
     Weight { weight: f64 },
 
-    /// The journal of a sweep, which stores finished points, could not be written. It still
-    /// contains the points that were stored before.
+    /// The journal of a sweep of settings could not be written. The journal stores finished points,
+    /// and the points stored before the error are still in it.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
-    /// No part of the recording can be held out to test a fit: there are too few blocks of time, or
-    /// they are silent or equal.
+    /// No part of the recording can be held out to test a fit, because there are too few blocks of
+    /// time, or because the blocks are silent or equal.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
-    /// A sweep cannot give this value to this setting (knob).
+    /// A sweep of settings cannot use this value for this setting.
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },
 
@@ -346,7 +348,8 @@ pub enum AuthorError {
         low: f64,
         high: f64,
     },
-    /// The true spectrum is known only for a free motion, not for sweeps.
+    /// The true spectrum of a simulation is known only for a free motion, not for sweeps of the
+    /// finger.
     #[error(
         "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
     )]

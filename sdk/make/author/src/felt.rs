@@ -1,6 +1,6 @@
-//! How much of the difference between two spectra a fingertip can feel: the part above the
-//! detection threshold. The computation shares nothing with the measures by which models are fitted
-//! and compared, so it judges the models independently.
+//! How much of the difference between two spectra a fingertip can feel, i.e. the difference above
+//! the detection threshold. This computation is independent of the measures with which models are
+//! fitted and compared.
 
 use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
 use htex_dsp::vibrotactile::{Listener, Skin};
@@ -18,24 +18,25 @@ pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 
 /// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
 /// and the difference between them. Below the threshold nothing can be felt, so a level below 0 dB
-/// counts as 0 dB in a difference.
+/// counts as 0 dB when the difference is computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Felt {
     /// Centre frequencies of the bands, hertz.
     pub centre_hz: Vec<f64>,
     /// Sensation level of the reference in each band, decibels; negative below the threshold.
     pub reference_db: Vec<f64>,
-    /// Sensation level of the other spectrum in each band, decibels.
+    /// Sensation level of the compared spectrum in each band, decibels; negative below the
+    /// threshold.
     pub level_db: Vec<f64>,
     /// Difference of the levels above the threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// RMS of these differences over the bands in which at least one spectrum is above the
-    /// threshold, decibels; 0 if there is no such band.
+    /// RMS of the differences in `error_db`, decibels. Only bands in which at least one spectrum is
+    /// above the threshold count. 0 if there is no such band.
     pub error_rms_db: f64,
     /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the total levels above the threshold, for the energy of all bands together,
-    /// decibels.
+    /// Difference of the total levels above the threshold, decibels. The total level is computed
+    /// from the energy of all bands together.
     pub total_error_db: f64,
 }
 
@@ -55,14 +56,14 @@ pub struct FeltError {
     pub error_rms_db: f64,
     /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the total levels above the detection threshold, for the energy of all bands
-    /// together, decibels.
+    /// Difference of the total levels above the detection threshold, decibels. The total level is
+    /// computed from the energy of all bands together.
     pub total_error_db: f64,
-    /// Whether both the difference in every band and the total difference are below the difference
-    /// threshold: too small to notice.
+    /// Whether the difference is too small to notice: in every band and in total, it is below the
+    /// difference threshold.
     pub below_difference_threshold: bool,
-    /// As `below_difference_threshold`, but for a person with a sensitive finger and soft skin
-    /// ([`Listener::sensitive`]).
+    /// The same as `below_difference_threshold`, computed for a person with a sensitive finger and
+    /// soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
     /// Whether the nine-band error is at or below the recording's own repeatability; false if the
     /// repeatability is not known.
@@ -70,8 +71,8 @@ pub struct FeltError {
 }
 
 impl FeltError {
-    /// Measures the difference between magnitudes and a recorded spectrum. The caller gives their
-    /// nine-band error ([`htex_format::Measure::NineBand`]).
+    /// Measures the difference between magnitudes and a recorded spectrum. `nine_band_db` is the
+    /// nine-band error of the magnitudes ([`htex_format::Measure::NineBand`]).
     pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], nine_band_db: Option<f64>) -> Self {
         let by =
             |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
@@ -88,7 +89,8 @@ impl FeltError {
         }
     }
 
-    /// Combines two results into the worse one: for each number, the value further from 0.
+    /// Combines two results into a worst case. Of each number, the value further from 0 is kept;
+    /// each flag is true only if it is true in both results.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
@@ -104,24 +106,25 @@ impl FeltError {
     }
 }
 
-/// For how many textures a model's error cannot be felt, because it is below a listener's
-/// difference threshold. A separate count says for how many textures the error is within the
-/// recording's own variation. That count says nothing about what can be felt: the worse the
-/// repeatability of the recordings, the higher it is.
+/// Number of textures for which a model's error cannot be felt, because the error is below a
+/// listener's difference threshold. A separate count, `within_repeatability`, is the number of
+/// textures whose error is within the recording's own variation. This second count does not show
+/// what can be felt: it is higher if the recordings repeat less well.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
     /// Textures whose difference is below the difference threshold.
     pub below_difference_threshold: usize,
-    /// The same count for a person with a sensitive finger and soft skin.
+    /// Textures whose difference is below the difference threshold of a person with a sensitive
+    /// finger and soft skin.
     pub below_if_sensitive: usize,
     /// Textures whose nine-band error is at or below the recording's own repeatability.
     pub within_repeatability: usize,
 }
 
 impl FeltShare {
-    /// Counts a texture.
+    /// Adds a texture's result to the counts.
     pub fn count(&mut self, felt: &FeltError) {
         self.textures += 1;
         self.below_difference_threshold += usize::from(felt.below_difference_threshold);
@@ -130,9 +133,9 @@ impl FeltShare {
     }
 }
 
-/// Compares what a listener can feel of two spectra on the same grid: a reference and `magnitude`.
-/// Forces are converted to displacements of the skin through its impedance, accelerations and
-/// velocities by integration.
+/// Compares what a listener can feel of two spectra on the same frequency grid: `reference` and
+/// `magnitude`. Magnitudes are first converted to displacements of the skin: forces through the
+/// skin's impedance, accelerations and velocities by integration.
 ///
 /// ```
 /// use htex_author::{SpectrumRef, felt};
@@ -215,8 +218,8 @@ fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     }
 }
 
-/// Returns the magnitude of a sinusoid exactly at a listener's detection threshold, in the
-/// quantity's unit, at a frequency in hertz above 0.
+/// Returns the magnitude of a sinusoid that lies exactly at a listener's detection threshold, in
+/// the quantity's unit. The frequency `hertz` must be above 0.
 ///
 /// ```
 /// use htex_author::threshold_magnitude;

@@ -1,15 +1,16 @@
 //! The law of a texture recorded at several motions: exponents with their standard errors.
 //!
 //! Levels: a least-squares fit of `ln L = k + b ln v + c ln F` over the conditions. The level of
-//! one recording is assumed to be known only within [`LEVEL_ERROR_DB`]. Two conditions are
-//! therefore not enough for a certain exponent.
+//! one recording is assumed to have an error of at least [`LEVEL_ERROR_DB`]. An exponent from only
+//! two conditions therefore remains uncertain.
 //!
 //! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
 //! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
-//! with the speed for other reasons. In recorded strokes without lines that move, the best shift
-//! was anywhere between -0.5 and 1.5, and it lowered the squared difference only to 0.25 to 0.9 of
-//! its value without a shift. So an exponent counts as measured only if the squared difference
-//! falls to a quarter: of its value without a shift, or of its value at the assumed exponent.
+//! with the speed for other reasons. In recorded strokes without moving lines, the best exponent
+//! `a` was anywhere between -0.5 and 1.5. It lowered the squared difference only to 0.25 to 0.9 of
+//! the value without a shift. Therefore an exponent counts as measured only if the squared
+//! difference falls to a quarter of the value without a shift, or to a quarter of the value at the
+//! assumed exponent.
 
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 

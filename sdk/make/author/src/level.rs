@@ -2,16 +2,18 @@
 //!
 //! By default the level of a representation is the level of its recording. With `--level fitted` it
 //! is the level of the model's own fit, which differs from the recording by up to 6 dB on simulated
-//! surfaces. sBeta is fitted to the ten largest peaks and to some other bins, and sSlope to the
-//! largest bin; in a noisy estimate these bins are too high. MFCC averages logarithms, and the
-//! result is too low. For a model such as Bands, the level follows from the energies that it
-//! stores. Such a model declares this ([`htex_host::Descriptor::keeps_level`]) and keeps the level
-//! of its fit. sBeta and sSlope round their parameters as files do before they compute the level.
+//! surfaces. The levels of sBeta and sSlope are too high: sBeta is fitted to the ten largest peaks
+//! and to some other bins, sSlope to the largest bin, and in a noisy estimate these bins are too
+//! high. The level of MFCC is too low because MFCC averages logarithms. For a model such as Bands,
+//! the level follows from the energies that it stores. The descriptor of such a model states this
+//! ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the model's fit.
+//! sBeta and sSlope round their parameters in the same way as files before they compute the level.
 //!
-//! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate:
-//! the conversion to the player's rate removes up to half of the power there. For AR the loss is up
-//! to 3.0 dB at its Nyquist frequency of 1000 Hz. The stored level compensates for this loss
-//! ([`LoadedModel::played_part`]), so that the texture is played at the level of the recording.
+//! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate,
+//! because the conversion to the player's rate removes up to half of the power near that frequency.
+//! For AR the loss is up to 3.0 dB at its Nyquist frequency of 1000 Hz. The stored level
+//! compensates for this loss ([`LoadedModel::played_part`]), so that the texture is played at the
+//! level of the recording.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
@@ -24,14 +26,14 @@ use crate::SpectrumRef;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// The recording's RMS in the band. The asset then plays at the level of its recording. If the
-    /// played samples are recorded and fitted again, the level stays the same. A model whose
-    /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]) keeps the level of its
-    /// fit.
+    /// The recording's RMS in the band, so that the asset plays at the level of its recording. If
+    /// the played samples are recorded and fitted again, the level stays the same. Exception: for a
+    /// model whose parameters contain the level ([`htex_host::Descriptor::keeps_level`]), the level
+    /// of the model's fit is used.
     #[default]
     Recording,
-    /// The level of the model's fit, adapted to the parameters as they are stored. The paper gives
-    /// no rule for levels.
+    /// The level of the model's fit, adjusted to the rounded parameters that the file stores. The
+    /// paper gives no rule for levels.
     Fitted,
 }
 
@@ -48,8 +50,8 @@ impl Level {
     }
 }
 
-/// Returns the level to store for a fit: an RMS in the spectrum's unit. `stored` are the fit's
-/// parameters as the file stores them.
+/// Returns the level to store for a fit: an RMS in the spectrum's unit. `stored` contains the fit's
+/// parameters, rounded as the file stores them.
 ///
 /// # Errors
 /// When the model refuses the parameters.

@@ -1,6 +1,6 @@
-//! Measures of agreement with a reference spectrum. This module computes each row of [`Measure`]:
-//! for magnitudes, for a spectrum measured in a recording of the played texture, and for rendered
-//! samples.
+//! Measures of agreement with a reference spectrum. This module computes each measure of
+//! [`Measure`] for three kinds of data: a model's magnitudes, the spectrum of a recording of the
+//! played texture, and rendered samples.
 
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
@@ -19,9 +19,9 @@ const SECONDS: f64 = 20.0;
 // The seed is always the same, so that measuring an asset again gives the same errors.
 const SEED: u64 = 1;
 
-/// Agreement of a spectrum with a reference. It consists of all measures that need only magnitudes
-/// (all but [`Measure::Felt`]), and of the errors in nine bands. The paper's regression uses the
-/// same bands, but standardised absolute differences in them.
+/// Agreement of a spectrum with a reference. It consists of the errors in nine bands and of all
+/// measures that need only magnitudes (all except [`Measure::Felt`]). The paper's regression uses
+/// the same nine bands, but with standardised absolute differences.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
@@ -32,7 +32,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Returns a measure; `None` if it cannot be computed for the reference.
+    /// Returns the value of a measure; `None` if the measure cannot be computed for this reference.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.measures.get(measure)
     }
@@ -122,10 +122,10 @@ pub(crate) fn rounding_error_db(
 }
 
 /// Returns the magnitudes that would be measured in a recording of the played texture, at the
-/// reference's frequencies. For most models they are computed without random numbers, from the
-/// model's magnitudes and the Hann window ([`LoadedModel::read_magnitude`]). This method covers
-/// only the main lobe of the window, so for a model with lines, samples are rendered and measured
-/// instead (`rendered_spectrum`).
+/// reference's frequencies. For most models, these magnitudes are computed without random numbers
+/// from the model's own magnitudes and the Hann window ([`LoadedModel::read_magnitude`]). This
+/// computation includes only the main lobe of the window, which is not enough for a model with
+/// spectral lines. For such a model, samples are rendered and measured (`rendered_spectrum`).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.
@@ -161,8 +161,8 @@ fn rendered_spectrum(
 }
 
 /// Scales samples with an RMS of 1 to a level, and returns their magnitudes at the reference's
-/// frequencies, in the level's unit. The average over segments is an RMS. Magnitudes above the
-/// samples' Nyquist frequency are 0.
+/// frequencies, in the level's unit. The spectra of the segments are averaged as an RMS. Magnitudes
+/// above the samples' Nyquist frequency are 0.
 ///
 /// # Errors
 /// When there are too few samples, or they are not finite.

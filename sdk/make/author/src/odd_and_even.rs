@@ -1,5 +1,5 @@
-//! Odd and even blocks of time in recordings. They give two spectra of a texture that share no
-//! sample.
+//! Odd and even blocks of time in recordings. The odd blocks give one spectrum of a texture and the
+//! even blocks another. The two spectra share no sample.
 
 use htex_dsp::spectrum::Complex;
 

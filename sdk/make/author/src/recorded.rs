@@ -2,11 +2,12 @@
 //!
 //! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
 //! outside the band are removed, the ends of a segment are no longer zero, and a plain sum of the
-//! segments would have a step every 0.1 s. So each segment is windowed once more before it is
-//! added. The sum is then divided by the sum of the squared windows, which gives back the recorded
-//! signal. Two segments from different stretches share no signal. Where one fades into the other,
-//! the sum is divided by the root of the sum of the fourth powers instead, which preserves the
-//! power. The last segment fades into the first one in this way, so that the loop has no seam.
+//! segments would have a step every 0.1 s. Therefore each segment is windowed once more before it
+//! is added. Dividing the sum by the sum of the squared windows gives back the recorded signal.
+//! Segments from different stretches have no signal in common. Where one such segment fades into
+//! another, the sum is divided by the root of the sum of the windows' fourth powers, which
+//! preserves the power. The last segment fades into the first segment in the same way, so that the
+//! loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -27,17 +28,20 @@ const MOST_SEGMENTS: usize = 300;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RecordedLoop {
-    /// Speed and force: the given values, or else the medians of the measured ones.
+    /// Speed and force of the recording: the given values or, if none are given, the medians of the
+    /// measured values.
     pub condition: Exploration,
     /// The recorded quantity; the samples are in its unit.
     pub quantity: Quantity,
     /// The samples in the band of the spectrum, compensated for the setup's response. For a
-    /// recording of one axis, they are the recorded signal in the band.
+    /// recording of one axis, the samples are the recorded signal in the band.
     pub samples: Vec<f64>,
     pub rate_hz: f64,
-    /// RMS of the samples. Models that are fitted to the recording have the same level.
+    /// RMS of the samples. By default, models that are fitted to the recording are stored with the
+    /// same level.
     pub level_rms: f64,
-    /// Number of segments in the loop: those from the first 30 s that are read.
+    /// Number of segments in the loop. Only segments from the first 30 s of the read parts are
+    /// used.
     pub segments: usize,
 }
 
@@ -45,8 +49,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// The errors of [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above
-    /// twice the band's highest frequency, or is above 192 kHz.
+    /// The errors of [`segment_take`], and an error if the rate is not a multiple of 10 Hz, not
+    /// above twice the band's highest frequency, or above 192 kHz.
     pub fn new(
         take: &Take,
         options: &SpectrumOptions,

@@ -1,4 +1,4 @@
-//! Mixing two textures into one between them.
+//! Mixing two textures into a texture between them.
 
 use htex_format::{
     Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Provenance, Representation,
@@ -24,16 +24,17 @@ impl MixedAsset<'_> {
     }
 }
 
-/// Mixes two textures. `weight` is the share of `b`, from 0 to 1. Each model that is in both
-/// textures interpolates between their parameters, as it does between the conditions of one
-/// texture; levels are interpolated linearly.
+/// Mixes two textures. `weight` is the share of `b`, from 0 to 1. Each model that both textures
+/// contain interpolates between the parameters of the two textures, with the same method as between
+/// the conditions of one texture. Levels are interpolated linearly.
 ///
-/// The result has the conditions of both textures. If only one texture has a condition, the other
-/// contributes the parameters that a player would interpolate there. The law comes from the texture
-/// with the larger weight, or from `a` if the weights are equal. If the texture that
-/// gives the law stores triangles of conditions (in which a player interpolates), the result keeps
-/// them, provided that this texture has exactly the conditions of the result. Otherwise the result
-/// has no stored triangles, and there is a warning if a texture had some.
+/// The result has the conditions of both textures. If only one texture has a condition, the
+/// parameters of the other texture are interpolated for this condition, as in a player. The law
+/// comes from the texture with the larger weight, or from `a` if the weights are equal. A texture
+/// may store triangles of conditions, in which a player interpolates. The result gets the triangles
+/// of the texture that gives the law, if that texture has exactly the conditions of the result.
+/// Otherwise the result has no stored triangles. If one of the two textures had triangles, this
+/// adds a warning.
 ///
 /// # Errors
 /// When the weight is out of range, the textures have no model in common, their quantity or band

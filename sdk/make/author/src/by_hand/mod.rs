@@ -1,9 +1,9 @@
 //! Textures made without a recording: from parameters written by hand, or by mixing two textures.
-//! The paper names both as uses of a representation with few numbers (Balasubramanian & Vardar
-//! 2026, Discussion).
+//! The paper names both methods as uses of a representation with few numbers (Balasubramanian &
+//! Vardar 2026, Discussion).
 //!
-//! Such an asset stores how it was made ([`htex_format::Made`]). It stores no quality, because
-//! there is no recording to compare it with.
+//! Such an asset stores how it was made ([`htex_format::Made`]). It stores no measures of quality,
+//! because there is no recording to compare the asset with.
 
 mod mix;
 mod parameters;

@@ -32,8 +32,8 @@ pub struct ByHand {
 }
 
 impl ByHand {
-    /// Starts the description of a texture: a lateral force in the tactile band, with unknown speed
-    /// and normal force.
+    /// Starts the description of a texture. Its quantity is the lateral force, its band is the
+    /// tactile band, and its speed and normal force are unknown.
     pub fn new(name: impl Into<String>, level_rms: f64, tool: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -53,7 +53,7 @@ impl ByHand {
         self
     }
 
-    /// Sets speed and force.
+    /// Sets the speed and force to which the parameters apply.
     #[must_use]
     pub fn with_condition(mut self, condition: Condition) -> Self {
         self.condition = condition;
@@ -68,7 +68,7 @@ impl ByHand {
 }
 
 /// Makes an asset from parameters. The model computes the spectrum of the parameters once, so that
-/// an error reports parameters that the model cannot play.
+/// invalid parameters are found here and not during playback.
 ///
 /// ```
 /// use htex_author::by_hand::{ByHand, make};
@@ -83,8 +83,8 @@ impl ByHand {
 /// ```
 ///
 /// # Errors
-/// When a parameter is unknown, missing or out of range, the level is out of the quantity's range,
-/// or the model refuses the parameters.
+/// When a parameter is unknown, missing or out of range, when the level is out of the quantity's
+/// range, or when the model refuses the parameters.
 pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, AuthorError> {
     let at = ByHandAt {
         condition: texture.condition,
@@ -135,8 +135,8 @@ pub struct ByHandAt {
 /// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// The errors of [`make`]. Also when there is no model or no condition, or when only some
-/// conditions have a speed or a force.
+/// The errors of [`make`]. There is also an error if there is no model or no condition, or if only
+/// some conditions have a speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {

@@ -1,12 +1,14 @@
-//! Detection of recordings without a texture in the band (20 to 1000 Hz). Either their power in the
-//! band leaks from lower frequencies, or it is far weaker than the power above the band.
+//! Detection of recordings without a texture in the band (20 to 1000 Hz). In such a recording, the
+//! power in the band either leaks from lower frequencies or is far weaker than the power above the
+//! band.
 //!
-//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, or a drift from noise. A
-//! window of one second can, if its side lobes are 92 dB down (four-term Blackman-Harris; Harris
-//! 1978). In 240 third-party recordings of fingers, tools and microphones, the segments show at
-//! most 4.3 dB more power in the band than the long windows do. If normal forces and positions of
-//! such fingers are read as a texture, the segments show at least 32 dB more. For noise of 1 to 15
-//! Hz they show at least 11 dB more.
+//! The spectrum of a 0.2 s segment under a Hann window cannot tell 15 Hz from 20 Hz, or a drift
+//! from noise. The spectrum of one second can, under a window whose side lobes are 92 dB down
+//! (four-term Blackman-Harris; Harris 1978). The check compares the power in the band that the two
+//! windows show. In 240 third-party recordings of fingers, tools and microphones, the short
+//! segments show at most 4.3 dB more power than the long windows. If the normal forces and
+//! positions of such fingers are read as a texture, the short segments show at least 32 dB more.
+//! For noise of 1 to 15 Hz, they show at least 11 dB more.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,5 @@
-//! Detection of friction coefficients that were given as forces.
+//! Detection of recordings whose values are friction coefficients although the file declares
+//! forces.
 
 use htex_base::finding::Findings;
 

@@ -1,5 +1,5 @@
-//! Detection of signals that no finger produces: a straight line, and values that alternate from
-//! sample to sample.
+//! Detection of signals that no finger produces: straight lines (ramps), and values that alternate
+//! from sample to sample.
 
 use htex_base::finding::Findings;
 

@@ -1,4 +1,5 @@
-//! Detection of recordings whose level differs from the level of the others at the same condition.
+//! Detection of recordings whose level differs from the level of the other recordings at the same
+//! condition.
 
 use htex_base::finding::Findings;
 

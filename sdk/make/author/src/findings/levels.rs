@@ -44,10 +44,10 @@ pub(super) fn definition() -> String {
 
 /// Result of checking the values of an axis.
 pub(super) enum Levels {
-    /// There are too few different values for any other check.
+    /// The axis has too few different values for any other check.
     Coarse,
-    /// There are enough different values. The list contains the values at which the signal is
-    /// clipped, and is empty if the signal is not clipped.
+    /// The axis has enough different values. The list contains the values at which the signal is
+    /// clipped; it is empty if the signal is not clipped.
     ClippedAt(Vec<f64>),
 }
 

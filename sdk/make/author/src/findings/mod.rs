@@ -29,9 +29,9 @@ pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
-/// Checks the signals of a recording: for clipping, stuck sensors, spikes, ramps and alternating
-/// values, for a band without a texture, and for forces and speeds that a finger cannot have. The
-/// result includes the findings of the time column.
+/// Checks the signals of a recording. The checks find clipping, stuck sensors, spikes, ramps,
+/// alternating values, a band without a texture, and forces or speeds that a finger cannot have.
+/// The result also includes the findings about the time column, made when the file was read.
 ///
 /// ```
 /// use htex_author::{Recording, recording_findings};

@@ -1,11 +1,12 @@
-//! Detection of outliers: a few large ones of any shape, or many that last one sample each.
+//! Detection of outliers: a few large outliers of any shape, or many outliers of one sample each.
 //!
 //! A corner is the difference between a sample and the mean of its two neighbours. A texture has
 //! sharp corners of its own (stick and slip), so a large number of corners proves nothing. But a
-//! corner of a texture lasts several samples, and a repair of one sample does not remove it. In
-//! each of 240 third-party recordings, a repair removes at most four corners of 12 times the usual
-//! size, and corners of five times the usual size at no more than 0.1 % of the samples (0.62 % in
-//! the current of a motor).
+//! texture's corner lasts several samples, so it remains when one sample is repaired, i.e.
+//! interpolated from its neighbours. The corner of a single-sample outlier disappears. In 240
+//! third-party recordings, at most four corners of 12 times the usual size disappear per recording.
+//! Corners of five times the usual size disappear at no more than 0.1 % of the samples, except for
+//! 0.62 % in a recording of a motor's current.
 
 use std::ops::Range;
 

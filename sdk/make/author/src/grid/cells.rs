@@ -1,4 +1,5 @@
-//! The cells of a grid: the steady windows around each crossing of its lines.
+//! The cells of a grid. A cell contains the steady windows around one crossing of the grid's speed
+//! and force lines.
 
 use htex_dsp::order;
 

@@ -1,10 +1,11 @@
 //! Cross-validation over time: each quarter of the recordings is left out in turn and predicted
 //! from the other three.
 //!
-//! Neighbouring cells share windows, and windows overlap. A prediction of a condition from its
-//! neighbours would therefore use samples with which it is then compared. Blocks of time share no
-//! samples. They are long, because a finger and its motion drift: samples from a second before or
-//! after a block predict the block better than a recording can predict a later playback.
+//! Neighbouring cells share windows, and windows overlap. If a condition were predicted from
+//! neighbouring cells, the prediction would use some of the samples with which it is then compared.
+//! Blocks of time share no samples. The blocks are long because a finger and its motion drift. A
+//! short block would be predicted too well, from samples recorded within a second of it, and the
+//! error would be too small for a later playback.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Prediction of left-out blocks of time. It gives an error of the grid that can be measured
-//! without knowing the true texture.
+//! Prediction of left-out blocks of time. The error of this prediction measures the grid's error,
+//! and the true texture need not be known.
 
 use htex_dsp::Band;
 use htex_dsp::bands::rms;

@@ -1,4 +1,5 @@
-//! The lines of a grid: given by the user, or chosen from the motions of the steady windows.
+//! The lines of a grid, i.e. its speeds and forces. The user gives them, or they are chosen from
+//! the motions of the steady windows.
 
 use super::request::Grid;
 use crate::AuthorError;

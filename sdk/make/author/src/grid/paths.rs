@@ -1,11 +1,12 @@
 //! Spectra of windows over equal lengths of path.
 //!
-//! Most of a texture's spectrum is its relief, read at the finger's speed. The finger may have
-//! another speed in a window than the speed of the grid line. The window is then made as long as
-//! the finger needs for the path that it would cover in 0.2 s at the line's speed. Its bins then
-//! lie at the frequencies that the relief has at the line (order tracking, as for rotating
-//! machines). This keeps the lines of a weave sharp although the speed scatters within a cell;
-//! components that do not follow the speed are blurred by the same amount instead.
+//! Most of a texture's spectrum is its relief, read at the finger's speed. In a window, the finger
+//! may be faster or slower than the speed of the grid line. The length of the window is then
+//! changed so that the finger covers the same path in it as in 0.2 s at the line's speed. The
+//! frequency bins of the changed window correspond to the frequencies that the relief produces at
+//! the line's speed (order tracking, as for rotating machines). This keeps the spectral lines of a
+//! weave sharp although the speed varies within a cell. In exchange, components that do not follow
+//! the speed are blurred by the same amount.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -33,14 +33,14 @@ pub struct GridCell {
     pub force_n: f64,
     /// Number of steady windows inside the cell.
     pub segments: usize,
-    /// Number of windows that were averaged, including those borrowed from neighbours; 0 for a thin
-    /// cell.
+    /// Number of windows that were averaged, including windows from neighbouring cells; 0 for a
+    /// cell with too few windows.
     pub averaged: usize,
-    /// RMS over nine bands of the difference between odd and even blocks of the windows, divided by
-    /// √2, decibels.
+    /// Repeatability of the cell's spectrum, decibels: the RMS over nine bands of the difference
+    /// between the odd and the even blocks of the windows, divided by √2.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
-    /// Index of the cell's condition in the asset; `None` for a thin cell.
+    /// Index of the cell's condition in the asset; `None` for a cell with too few windows.
     pub condition: Option<usize>,
 }
 
@@ -60,14 +60,15 @@ pub struct GridReport {
     /// interpolating between the recorded spectra of the other blocks. The error is the RMS
     /// difference in third octaves. `None` if the blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
-    /// The same error for a single condition that serves all motions: the mean of all steady
-    /// windows, scaled by the law. A useful grid has a smaller error than this.
+    /// The held-out error of an asset with a single condition, decibels. This condition is the mean
+    /// of all steady windows, scaled to each motion by the law. A useful grid has a smaller error
+    /// than this.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, ordered by speed and then by force.
     pub cells: Vec<GridCell>,
     /// Triangles in which players interpolate, each with the indices of three conditions.
     pub triangles: Vec<[usize; 3]>,
-    /// Mean speed in mm/s and force in newtons of each steady window.
+    /// Mean speed (mm/s) and mean force (newtons) of each steady window.
     #[serde(skip)]
     pub motions: Vec<[f64; 2]>,
 }

@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use crate::AuthorError;
 
-/// Lines of a grid. The fit chooses the lines of an axis for which none are given.
+/// The lines of a grid: its speeds and forces. If the lines of an axis are not given, the fit
+/// chooses them.
 ///
 /// ```
 /// use htex_author::Grid;
@@ -27,8 +28,8 @@ impl Grid {
     /// Parses one or more texts such as `auto`, `speed=40,80,160` (mm/s) or `force=0.3,0.6` (N).
     ///
     /// # Errors
-    /// When a text has another form, an axis is given twice, or a line is not above 0, not finite,
-    /// too large, or within 5 % of another line.
+    /// When a text has another form or an axis is given twice, or when a line is not above 0, not
+    /// finite, too large, or within 5 % of another line.
     pub fn parse<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Self, AuthorError> {
         let mut grid = Self::default();
         for text in texts {

@@ -1,4 +1,4 @@
-//! Choice of a grid's lines: the fewest lines that best predict what was left out.
+//! Choice of a grid's lines: the fewest lines that best predict the left-out blocks of time.
 
 use htex_format::Condition;
 

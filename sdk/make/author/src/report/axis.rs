@@ -43,7 +43,8 @@ impl Axis {
         self
     }
 
-    /// Returns the unit: the text after the label's last slash, or nothing.
+    /// Returns the unit: the text after the label's last slash, or an empty string if there is no
+    /// slash.
     pub fn unit(&self) -> &str {
         self.label.rsplit_once(" / ").map_or("", |(_, unit)| unit)
     }

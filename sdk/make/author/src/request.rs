@@ -18,7 +18,7 @@ pub struct ModelRequest {
 }
 
 impl ModelRequest {
-    /// Requests a model at its default options.
+    /// Requests a model with its default options.
     #[must_use]
     pub fn new(model: &LoadedModel) -> Self {
         Self { model: model.clone(), options: model.descriptor().default_options() }
@@ -31,7 +31,7 @@ impl ModelRequest {
     }
 }
 
-/// Options of an asset to fit.
+/// Options for fitting an asset.
 ///
 /// ```
 /// use htex_author::{AssetRequest, ModelRequest};
@@ -61,12 +61,12 @@ pub struct AssetRequest {
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// Grid of conditions, for recordings of a free motion. Without a grid, each recording has one
-    /// condition.
+    /// Grid of conditions, for recordings of a free motion. Without a grid, each recording gives
+    /// one condition.
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
-    /// Options that differ from their defaults, stored in the provenance.
+    /// Options whose values differ from their defaults. They are stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
     /// Program and version, stored in the provenance.
     pub tool: String,

@@ -42,19 +42,19 @@ pub(crate) fn definition() -> String {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
-    /// Sweeps, if the recording has sweeps and their segments represent at least half of the
-    /// sliding. Otherwise windows.
+    /// Uses `Sweeps` if the recording has sweeps and their segments represent at least half of the
+    /// sliding, and `Windows` otherwise.
     ///
-    /// A segment represents its whole sweep, up to 2 s of it.
+    /// A segment represents its whole sweep, but at most 2 s of sliding.
     #[default]
     Auto,
     /// One segment in the middle of each complete sweep (paper, Texture processing). Sweeps that
     /// the beginning or end of the recording cuts off are left out, because their middle is not
     /// known.
     Sweeps,
-    /// Windows over the whole recording, each overlapping the previous one by half (Welch 1967).
-    /// Without overlap, Hann windows would leave half of the recording unused, and the level of 10
-    /// s of noise would be uncertain by 0.2 dB.
+    /// Windows over the whole recording, each of which overlaps the previous window by half (Welch
+    /// 1967). Without overlap, Hann windows would leave half of the recording unused, and the level
+    /// of 10 s of noise would be uncertain by 0.2 dB.
     Windows,
 }
 
@@ -81,7 +81,8 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// How much of the finger's sliding the segments would represent if only sweeps were read.
+/// How much of the finger's sliding the segments of sweeps would represent, compared with all
+/// sliding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.
@@ -104,11 +105,11 @@ pub struct Segments {
     pub cut_off: usize,
     /// First samples of the segments that are left out because the motion differs from its target.
     pub off_target: Vec<usize>,
-    /// Set if `auto` uses windows although there are sweeps, because their segments would represent
-    /// too little of the sliding.
+    /// Set if `auto` uses windows although there are sweeps, because the segments of the sweeps
+    /// would represent too little of the sliding.
     pub unread: Option<Unread>,
-    /// The threshold that separates sweeps: the mean length of the signal vector, in the signal's
-    /// unit.
+    /// The threshold that the signal exceeds in a sweep: the mean length of the signal vector, in
+    /// the signal's unit.
     pub threshold: f64,
 }
 

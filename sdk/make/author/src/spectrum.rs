@@ -28,10 +28,11 @@ const GRID_TOLERANCE: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Averaging {
-    /// Mean of the magnitudes: one way to read "averaged the FFTs" (paper, Texture processing). For
-    /// noise, the mean is 1.05 dB below the RMS (a factor of √π/2, Rayleigh distribution).
+    /// Mean of the magnitudes. This is one interpretation of "averaged the FFTs" (paper, Texture
+    /// processing). For noise, the mean is 1.05 dB below the RMS (a factor of √π/2, Rayleigh
+    /// distribution).
     Magnitude,
-    /// Root of the mean power, which is the RMS of noise and tones.
+    /// Root of the mean power. For noise and for tones, this is the RMS.
     #[default]
     Rms,
     /// Magnitude of the mean of the complex spectra. Only signals with the same phase in all
@@ -58,7 +59,7 @@ impl Averaging {
 pub struct SpectrumOptions {
     pub segments: SegmentChoice,
     pub averaging: Averaging,
-    /// Response of the recording setup, by which spectra are divided.
+    /// Frequency response of the recording setup. Spectra are divided by this response.
     pub response: Option<SetupResponse>,
 }
 
@@ -123,7 +124,7 @@ pub struct TextureSpectrum {
     pub signal_rate_hz: f64,
 }
 
-/// Band and magnitudes of a spectrum, as fits and measures need them.
+/// Band, frequencies and magnitudes of a spectrum: the part that fits and measures use.
 #[derive(Debug, Clone, Copy)]
 pub struct SpectrumRef<'a> {
     pub band: Band,
@@ -132,8 +133,8 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
-    /// Whether the spectrum was recorded. Otherwise it was computed by the texture's law, between
-    /// two recorded spectra.
+    /// Returns whether the spectrum was recorded. A spectrum that was not recorded was computed by
+    /// the texture's law from two recorded spectra.
     pub fn is_recorded(&self) -> bool {
         self.segments > 0
     }

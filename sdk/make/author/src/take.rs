@@ -1,5 +1,5 @@
-//! The first stage of a fit. It turns a recording into the spectra of its segments, the motion in
-//! them, and its findings. No later stage reads the recording again.
+//! The first stage of a fit. From a recording, it computes the spectra of the segments, the motion
+//! in the segments, and the findings. No later stage reads the recording again.
 
 use std::path::Path;
 
@@ -30,14 +30,14 @@ pub struct Take {
 pub struct SegmentedTake {
     /// The recording's entry in the provenance of an asset, without the hash of its file.
     pub source: Source,
-    /// The recording's file. It is hashed only if an asset needs the hash, because hashing takes a
-    /// tenth of the time of reading.
+    /// The recording's file. The file is hashed only if an asset needs the hash, because hashing
+    /// adds about a tenth to the time of reading the file.
     pub file: RecordedFile,
     /// Whether the recording is simulated.
     pub simulated: bool,
     pub spectra: SegmentSpectra,
-    /// Speed and force: the given values, or else the medians of the measured ones over the
-    /// segments.
+    /// Speed and force: the given values or, if none are given, the medians of the values measured
+    /// in the segments.
     pub motion: Exploration,
     /// Ranges of speed and force over the segments.
     pub spread: Spread,
@@ -49,13 +49,13 @@ pub struct SegmentedTake {
     pub notes: Vec<Notice>,
 }
 
-/// Reads the texture of a recording: chooses its segments, leaves out segments whose motion differs
-/// from the given condition by more than 10 %, computes their spectra, and checks the signals.
+/// Computes the segment spectra of a recording and checks its signals. Segments whose motion
+/// differs from the given condition by more than 10 % are left out.
 ///
 /// # Errors
 /// When the recording is too short, its sample rate is too low, no segment remains, the setup's
-/// response is zero or not finite in the band, or a speed or force is out of range. With `strict`,
-/// also when a finding is an error or a warning.
+/// response is zero or not finite in the band, or a speed or force is out of range. If `strict` is
+/// true, findings that are errors or warnings also give an error.
 pub fn segment_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -155,7 +155,8 @@ pub fn validate_recording(
     report(read_recording(path, read), given, options)
 }
 
-/// Validates a recording given as bytes, as [`validate_recording`] does; `path` is not opened.
+/// Validates a recording that is given as bytes, in the same way as [`validate_recording`]. The
+/// file `path` is not opened.
 ///
 /// # Errors
 /// When an option does not apply.

@@ -1,5 +1,5 @@
-//! Diagram of a chain of processing stages as one SVG element: running stages with their costs, and
-//! omitted stages in grey.
+//! Diagram of a chain of processing stages, drawn as one SVG element. It shows the running stages
+//! with their costs, and the omitted stages in grey.
 
 use crate::report::markup::Element;
 use crate::report::number::{brief, px};
@@ -28,7 +28,7 @@ pub struct Chain {
     pub title: String,
     /// The running stages, in order.
     pub stages: Vec<ChainStage>,
-    /// The omitted stages, each with name and reason.
+    /// The omitted stages: for each, its name and the reason why it is omitted.
     pub left_out: Vec<(String, String)>,
 }
 

@@ -14,9 +14,9 @@ const PALETTE: [&str; 6] = ["#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00
 /// Colours of models beyond the palette, and of models that are not in the registry.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
-/// Returns the colour of the model `short_name` (such as `"sbeta"`). It depends on the model's
-/// place among the short names of the built-in models, so it is the same in every picture. Any
-/// other model gets one of four further colours, chosen by its name.
+/// Returns the colour of the model `short_name` (such as `"sbeta"`). The colour of a built-in model
+/// depends on the position of its short name in `builtin`, so the colour is the same in every
+/// picture. Any other model gets one of four further colours, chosen by its name.
 pub fn model_color(short_name: &str, builtin: &[&str]) -> &'static str {
     let name = short_name.to_ascii_lowercase();
     let place = builtin.iter().position(|known| known.eq_ignore_ascii_case(&name));

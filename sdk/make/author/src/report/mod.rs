@@ -1,7 +1,8 @@
 //! SVG plots, heat tables and self-contained HTML reports.
 //!
-//! This module converts data to text. It reads no files and no clock and does no signal processing,
-//! so equal data gives equal bytes. Pages contain their own style, use no scripts and load nothing.
+//! This module converts data to text. It reads neither files nor the clock, so equal data gives
+//! equal bytes. It does no signal processing. Pages contain their own style sheet, use no scripts
+//! and load no external resources.
 //!
 //! ```
 //! use htex_author::report::{Axis, Plot, Series};

@@ -1,4 +1,5 @@
-//! Self-contained HTML pages: one file with its style, without scripts or external resources.
+//! Self-contained HTML pages. A page is one file that contains its style sheet and uses no scripts
+//! and no external resources.
 
 use crate::report::markup::{Element, escape};
 
@@ -18,7 +19,7 @@ impl Page {
         Self { title: title.to_owned(), body: heading.render() }
     }
 
-    /// Starts a section.
+    /// Starts a section with the heading `text`.
     pub fn heading(&mut self, text: &str) {
         self.html(&Element::new("h2").text(text).render());
     }
@@ -48,7 +49,7 @@ pub fn paragraph(text: &str) -> String {
     Element::new("p").text(text).render()
 }
 
-/// Returns `items` as a list, or nothing if there are none.
+/// Returns `items` as an HTML list, or an empty string if there are no items.
 pub fn list(items: &[impl ToString]) -> String {
     if items.is_empty() {
         return String::new();
@@ -70,7 +71,7 @@ pub fn figures(pictures: &[String]) -> String {
     figures.children(pictures.iter().map(one)).render()
 }
 
-/// Returns HTML that expands when `summary` is clicked.
+/// Returns an element that shows `summary`. A click on the summary expands `html`.
 pub fn details(summary: &str, html: &str) -> String {
     let details = Element::new("details").child(&Element::new("summary").text(summary));
     details.raw(html).render()

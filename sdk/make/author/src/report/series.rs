@@ -5,7 +5,7 @@ use crate::report::color::RECORDING_COLOR;
 /// How a series' points are connected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Line {
-    /// Not connected: a scatter of markers.
+    /// Points are not connected; only their markers are drawn.
     None,
     /// A line through the points in order, interrupted at points that cannot be shown.
     Solid,
@@ -33,8 +33,8 @@ pub struct Series {
     pub marker_hollow: bool,
     /// Whether hovering over a point shows its values.
     pub hover: bool,
-    /// Hover texts that replace the values, one for each point. Points without a text show their
-    /// values.
+    /// Hover texts, one for each point, shown instead of the point's values. A point without a text
+    /// shows its values.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Stack of several plots as one SVG element.
+//! Several plots stacked vertically in one SVG element.
 
 use crate::report::markup::Element;
 use crate::report::number::px;

@@ -1,4 +1,4 @@
-//! Command-line values of choices, under the names that recipes use.
+//! Command-line values of settings that are choices. The values have the same names as in recipes.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;

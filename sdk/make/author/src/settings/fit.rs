@@ -27,7 +27,7 @@ settings! {
     /// ```
     pub struct FitSettings {
         /// Models to fit, by short name or id, in the order of the representations. If missing, the
-        /// models that are fitted by default.
+        /// default models are fitted.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
             default_value = "all",
@@ -83,7 +83,8 @@ settings! {
         pub grid: Option<Vec<String>> = "grid",
 
         /// Whether to refuse recordings with findings that are errors or warnings. A recipe sets
-        /// this among its gates. On the command line it is a flag for reading recordings.
+        /// this in its gates. On the command line, the flag `--strict` belongs to the options for
+        /// reading recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
@@ -180,10 +181,10 @@ impl FitSettings {
         models.into_iter().map(request).collect()
     }
 
-    /// Returns the reasons why models could not be fitted, but only for models that the user named.
-    /// `skipped` lists all models that were left out of an asset
-    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)). A model that the user did not name
-    /// may be left out without a report.
+    /// Returns the reasons why models that the user named could not be fitted. `skipped` lists all
+    /// models that were left out of an asset
+    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)). Models that the user did not name
+    /// are not included, because they may be left out without a report.
     pub fn named_of(&self, skipped: &[(String, String)]) -> Vec<String> {
         let names = || self.models.iter().flatten();
         let is_named = |id: &str| {
@@ -194,11 +195,12 @@ impl FitSettings {
         named.map(|(id, reason)| format!("{id}: {reason}")).collect()
     }
 
-    /// Returns the request for an asset to be fitted with these settings, from recordings that are
-    /// read with `reading`.
+    /// Returns the request for an asset. The asset is fitted with these settings to recordings that
+    /// are read with `reading`.
     ///
     /// # Errors
-    /// The errors of [`Self::models`]. Also when the setup's response or the grid cannot be read.
+    /// The errors of [`Self::models`], and an error if the setup's response or the grid cannot be
+    /// read.
     pub fn request(
         &self,
         registry: &Registry,
@@ -230,9 +232,9 @@ impl FitSettings {
     }
 }
 
-/// Returns the models with these names, each once. `all`, or an empty list, stands for the models
-/// that a program fits by default ([`Registry::by_default`]). Of these, the models that the running
-/// program has registered itself, such as models written in Python, come last.
+/// Returns the models with these names, each once. `all`, or an empty list, means the default
+/// models ([`Registry::by_default`]). Among the default models, those that the running program has
+/// registered itself come last, such as models written in Python.
 ///
 /// # Errors
 /// When a model is unknown.

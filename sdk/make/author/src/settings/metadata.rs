@@ -11,7 +11,8 @@ settings! {
     /// value; an empty text removes it.
     #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
     pub struct Metadata {
-        /// Name of the texture. A recipe gives it next to the recordings.
+        /// Name of the texture. In a recipe, the name is not among the metadata but next to the
+        /// recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,
@@ -84,7 +85,7 @@ settings! {
         ))]
         pub contact: Option<Contact>,
 
-        /// Exponents of the law, by which frequencies and level follow motions that were not
+        /// Exponents of the law that predicts frequencies and level for motions that were not
         /// recorded.
         #[cfg_attr(feature = "clap", arg(
             long,
@@ -98,13 +99,13 @@ settings! {
 }
 
 impl Metadata {
-    /// Whether no entry is given.
+    /// Returns whether all entries are missing.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Checks the entries as the asset's validation would. Returns warnings of the form
-    /// `FIELD: SENTENCE`.
+    /// Checks the entries by the rules that also apply when an asset is validated. Returns warnings
+    /// of the form `FIELD: SENTENCE`.
     ///
     /// # Errors
     /// When an entry would make the asset invalid.

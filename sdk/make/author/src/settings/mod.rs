@@ -1,7 +1,7 @@
-//! Settings by name. Each is defined once, for the flags of the command, the keywords of the Python
-//! package, recipes, and provenance.
+//! Settings with names. Each setting is defined once. The command's flags, the Python package's
+//! keywords, recipes and the provenance all use this definition.
 //!
-//! Every setting is optional, so that the settings of one texture can override the settings of many
+//! Every setting is optional. The settings of one texture can therefore override common settings
 //! ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
 
 #[cfg(feature = "clap")]

@@ -1,4 +1,4 @@
-//! Settings of reading recordings.
+//! Settings for reading recordings, by name.
 
 use std::path::PathBuf;
 
@@ -45,7 +45,8 @@ settings! {
         ))]
         pub map: Option<String> = "map",
 
-        /// Tracker files with the finger's motion: one for each recording, or one for all.
+        /// Tracker files with the finger's motion: one file for each recording, or one file for all
+        /// recordings.
         #[serde(deserialize_with = "one_or_more")]
         #[schemars(
             with = "Option<String>",
@@ -79,8 +80,8 @@ settings! {
         ))]
         pub quantity: Option<Quantity> = "quantity",
 
-        /// Value of a full-scale sample in files of samples (WAV, FLAC, NPY), in the quantity's
-        /// unit; not 0.
+        /// Value of a full-scale sample in files that contain only samples (WAV, FLAC, NPY), in the
+        /// quantity's unit; not 0.
         #[schemars(extend("not" = { "const": 0 }))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "UNITS",
@@ -89,7 +90,8 @@ settings! {
         ))]
         pub scale: Option<f64> = "scale",
 
-        /// File with the setup's response, by which spectra are divided.
+        /// File with the frequency response of the recording setup. Spectra are divided by this
+        /// response.
         #[schemars(description = "File of the setup's response, relative to the recipe.")]
         #[cfg_attr(feature = "clap", arg(
             value_name = "CSV",
@@ -106,7 +108,7 @@ settings! {
         #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Read the recording up to this time, s"))]
         pub to_s: Option<f64> = "to",
 
-        /// Limit on the numbers kept in memory.
+        /// Largest number of values that may be kept in memory.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(
             long = "most-numbers",
@@ -167,8 +169,8 @@ impl ReadingSettings {
         }
     }
 
-    /// Returns whether a setting says how to read the recordings' columns: their rate, scale, map,
-    /// tracker or quantity.
+    /// Returns whether a setting determines how the recordings' columns are read: the rate, the
+    /// scale, the map, the tracker, or a quantity other than the default.
     #[must_use]
     pub fn says_columns(&self) -> bool {
         let scaled = self.rate_hz.or(self.scale).is_some();
@@ -176,7 +178,8 @@ impl ReadingSettings {
         scaled || self.map.is_some() || self.tracker.is_some() || is_other
     }
 
-    /// Returns the options for computing spectra; reads the setup's response.
+    /// Returns the options for computing spectra. Reads the file with the setup's response if one
+    /// is given.
     ///
     /// # Errors
     /// When the response cannot be read.

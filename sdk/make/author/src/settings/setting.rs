@@ -1,5 +1,5 @@
-//! What all settings have in common: they may be missing, one set can be laid over another, and an
-//! asset's provenance stores some of them.
+//! What all settings have in common. A setting may be missing. One set of settings can override
+//! another set. An asset's provenance stores some of the settings.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -128,18 +128,18 @@ macro_rules! settings {
         )*}
 
         impl $name {
-            /// The names of the settings in recipes and keywords.
+            /// The names of the settings, as used in recipes and as Python keywords.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($field),)*];
 
-            /// Returns these settings, with missing ones taken from `under`.
+            /// Returns these settings. Settings that are missing here are taken from `under`.
             #[must_use]
             pub fn over(self, under: Self) -> Self {
                 use crate::settings::setting::Setting;
                 Self { $($field: self.$field.over(under.$field),)* }
             }
 
-            /// Returns the settings that differ from their defaults, under the names of the
-            /// command's flags, to store in an asset's provenance.
+            /// Returns the settings that an asset's provenance stores: those that differ from their
+            /// defaults, under the names of the command's flags.
             pub fn recorded(&self) -> std::collections::BTreeMap<String, String> {
                 #[allow(unused_imports)]
                 use crate::settings::setting::Setting;

@@ -51,11 +51,11 @@ pub(super) struct Contact {
 
 /// The material of the surface, which determines where the texture is read.
 pub(super) enum Material {
-    /// One piece of material, read at the finger's position. If frequencies do not follow the
-    /// speed, the texture is read along a path of its own instead. The number is the length of this
-    /// path, mm.
+    /// One piece of material with its relief. The relief is read at the finger's position. If
+    /// frequencies do not follow the speed ([`Departures`]), the relief is read along a separate
+    /// path instead. The number is the length of this path, mm.
     Piece(Relief, f64),
-    /// Material without end, read along the finger's path: one relief for each lateral axis.
+    /// Endless material, read along the finger's path. It has one relief for each lateral axis.
     Endless(Box<[Track; 2]>),
 }
 

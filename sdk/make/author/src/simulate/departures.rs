@@ -1,11 +1,11 @@
-//! Departures from the law of a rigid relief: hands and surfaces that do not follow it.
+//! Departures of simulated hands and surfaces from the law of a rigid relief.
 //!
-//! A rigid relief read at the finger's position has frequencies proportional to the speed, and
-//! friction has a level proportional to the normal force. Recorded textures depart from both: over
-//! three speeds on four materials, the level rose with the speed to the power of 0.69 to 0.82;
-//! exponents of the force were between -0.07 and 2.6; and accelerations of tools keep their
-//! frequencies. If a method assumes a rigid relief, a test on only such reliefs would not show
-//! where it fails.
+//! If a finger reads a rigid relief, the frequencies are proportional to the speed and the level of
+//! the friction is proportional to the normal force. Recorded textures depart from both rules. On
+//! four materials at three speeds, the level rose with the speed to the power of 0.69 to 0.82. The
+//! exponents of the force were between -0.07 and 2.6. The frequencies of tools' accelerations do
+//! not depend on the speed. A method that assumes a rigid relief must also be tested on other
+//! surfaces; tests on rigid reliefs would not show where the method fails.
 
 use htex_dsp::normal::Normal;
 
@@ -23,8 +23,8 @@ const SLOWEST_MM_S: f64 = 1.0;
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// How a surface and a hand differ from a rigid relief under a steady hand. By default they do not
-/// differ. Exponents are relative to 80 mm/s and 0.4 N.
+/// How a simulated surface and hand differ from a rigid relief under a steady hand. By default,
+/// there is no difference. The exponents scale the texture relative to 80 mm/s and 0.4 N.
 ///
 /// ```
 /// use htex_author::simulate::{Departures, SimulationOptions, Surface, simulate};
@@ -37,18 +37,19 @@ const TOUCHDOWN_S: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Departures {
-    /// Exponent with which frequencies follow the speed, -0.5 to 2. It is 1 for a relief, and 0 if
-    /// frequencies do not depend on the speed.
+    /// Exponent with which frequencies follow the speed, -0.5 to 2. The exponent is 1 for a rigid
+    /// relief, and 0 if frequencies do not depend on the speed.
     pub frequency_speed: f64,
-    /// Exponent with which the texture's level follows the speed, -2 to 2. It is 0 for a relief.
+    /// Exponent with which the texture's level follows the speed, -2 to 2. The exponent is 0 for a
+    /// rigid relief.
     pub level_speed: f64,
-    /// Exponent with which the texture's level follows the normal force, -1 to 3. It is 1 for
-    /// friction.
+    /// Exponent with which the texture's level follows the normal force, -1 to 3. The exponent is 1
+    /// for friction.
     pub level_force: f64,
     /// Drift of the texture's level during the recording, -60 to 60 dB per minute.
     pub drift_db_per_min: f64,
-    /// Fraction of the time in which the finger is off the surface, 0 to 0.8. It lifts for 50 to
-    /// 250 ms each time.
+    /// Fraction of the time in which the finger is off the surface, 0 to 0.8. Each lift lasts 50 to
+    /// 250 ms.
     pub lifted: f64,
 }
 
@@ -89,7 +90,7 @@ impl Departures {
         Self { drift_db_per_min, ..self }
     }
 
-    /// Sets the fraction of the time without contact.
+    /// Sets the fraction of the time in which the finger is off the surface.
     #[must_use]
     pub const fn with_lifted(self, lifted: f64) -> Self {
         Self { lifted, ..self }

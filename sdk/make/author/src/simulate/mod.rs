@@ -1,14 +1,14 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. For its five surfaces, the
-//! paper's Results describe the order of the levels and the frequencies at which their energy lies.
-//! The simulated surfaces agree with this description, but they are not measured, and every file
-//! says so.
+//! Use them for tests, examples and first steps without a recording rig. The paper's Results
+//! describe five surfaces: which are stronger, and at which frequencies their energy lies. The five
+//! simulated surfaces agree with this description. They are not measured, and every simulated file
+//! states that it is simulated.
 //!
 //! The hand's speed and force vary. The friction coefficient is a fixed relief along the surface,
-//! which is read at the finger's position. So the spectrum's frequencies scale with the speed and
-//! its level scales with the force, unless [`Departures`] say otherwise. The force then passes
-//! through models of skin, rig and sensor.
+//! which is read at the finger's position. Therefore the frequencies of the spectrum scale with the
+//! speed, and its level scales with the force, unless [`Departures`] are set. The friction force
+//! then passes through models of skin, rig and sensor.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
@@ -67,9 +67,9 @@ pub enum Motion {
     Free(FreeMotion),
 }
 
-/// A free motion: strokes of 0.6 to 1.6 s in both directions. Each stroke has its own speed and
-/// force, which change slowly by up to 10 %. The logarithms of speed and force are evenly
-/// distributed over their ranges.
+/// A free motion: strokes of 0.6 to 1.6 s in both directions. Each stroke has its own mean speed
+/// and force. Within a stroke, both change slowly by up to 10 %. The logarithms of speed and force
+/// are evenly distributed over their ranges.
 ///
 /// The finger is always on material that it has not touched before, and the strength of contact
 /// does not vary. The spectrum of a steady part is therefore a known function of speed and force:
@@ -108,8 +108,8 @@ impl Default for FreeMotion {
 #[non_exhaustive]
 pub struct SimulationOptions {
     pub surface: Surface,
-    /// Random seed. Equal seeds and options give equal samples; another seed simulates another
-    /// piece of the same material and another motion of the hand.
+    /// Random seed. Equal options with an equal seed give equal samples. A different seed simulates
+    /// a different piece of the same material and a different motion of the hand.
     pub seed: u64,
     /// Sample rate, 200 to 200 000 Hz.
     pub rate_hz: f64,
@@ -127,8 +127,8 @@ pub struct SimulationOptions {
 }
 
 impl SimulationOptions {
-    /// Returns options for the paper's recording condition: 10 s at 20 kHz, with 80 mm/s and 0.4 N.
-    /// The seed is 1.
+    /// Returns options for the paper's recording condition (80 mm/s, 0.4 N), with a duration of 10
+    /// s, a sample rate of 20 kHz and the seed 1.
     #[must_use]
     pub fn new(surface: Surface) -> Self {
         Self {
@@ -349,11 +349,11 @@ impl Simulation {
         self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
     }
 
-    /// Converts the simulation to a recording. It equals the recording that is read from the
-    /// written CSV. `source` is the file name.
+    /// Converts the simulation to a recording. This recording equals the one that is read from the
+    /// CSV written by [`Self::write_csv`]. `source` is the file name.
     ///
     /// # Errors
-    /// Never, as long as the options are within their ranges.
+    /// None if the simulation comes from [`simulate`].
     pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
         let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
         let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);

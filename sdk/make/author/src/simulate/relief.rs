@@ -1,5 +1,5 @@
-//! The relief: how the friction coefficient varies along the surface, as the finger's ridges sense
-//! it.
+//! The relief of a simulated surface: the variation of the friction coefficient along the surface,
+//! smoothed by the contact area of a finger's ridge.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,5 @@
-//! An endless relief that is read along the finger's path, so that no place of the material is
-//! touched twice.
+//! An endless relief. It is read along the finger's path, so the finger never touches the same
+//! place twice.
 
 use std::f64::consts::PI;
 

@@ -1,10 +1,10 @@
 //! The true spectrum of a free motion over a surface, as a closed-form function of speed and force.
 //!
 //! The relief is a stationary process along the path, with a known spectral density over spatial
-//! frequency. The speed converts spatial frequency to hertz, the force scales it, and skin and rig
-//! filter it. A spectrum is computed with a periodic Hann window of 0.2 s. Its expected power at a
-//! multiple of 5 Hz is the integral of the filtered density multiplied by the window's power
-//! transfer.
+//! frequency. The speed converts spatial frequency to hertz. The force scales the density, and skin
+//! and rig filter it. A spectrum is computed with a periodic Hann window of 0.2 s. Its expected
+//! power at a multiple of 5 Hz is the integral of the filtered density multiplied by the window's
+//! power transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -55,8 +55,9 @@ impl SimulationOptions {
     /// force.
     ///
     /// # Errors
-    /// When an option is out of range; when the motion is not free, because sweeps run over one
-    /// fixed piece of the material; or when the level drifts or the finger lifts.
+    /// When an option is out of range, when the motion is not free, or when the level drifts or the
+    /// finger lifts. Sweeps have no closed-form spectrum because they run over one fixed piece of
+    /// the material.
     pub fn truth(&self) -> Result<Truth, AuthorError> {
         self.check()?;
         if !self.departures.is_steady() {
@@ -159,9 +160,9 @@ impl Truth {
         self.filters.iter().enumerate().map(power).collect()
     }
 
-    /// Writes the true magnitudes as a JSON object. It contains the texture's magnitudes at 1 N,
-    /// for speeds in steps of at most 2 % over the range of the motion; the sensor's noise; and the
-    /// rule for combining them.
+    /// Writes the true magnitudes as a JSON object. The object contains the texture's magnitudes at
+    /// 1 N, for speeds in steps of at most 2 % over the range of the motion. It also contains the
+    /// sensor's noise, and the rule for combining noise and texture.
     ///
     /// # Errors
     /// When the writer fails.

@@ -19,10 +19,11 @@ pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
 }
 
 impl Simulation {
-    /// Writes the columns `t_s,fx_n,fy_n,fz_n,x_mm,y_mm`. A comment before them states that the
-    /// file is simulated, with the surface, the seed and the version.
+    /// Writes the columns `t_s,fx_n,fy_n,fz_n,x_mm,y_mm`. A comment line before the columns states
+    /// that the file is simulated, and names the surface, the seed, the motion, the rate and the
+    /// version.
     ///
-    /// The forces read back bit for bit.
+    /// Reading the file gives back exactly the same forces, bit for bit.
     ///
     /// # Errors
     /// When the writer fails.

@@ -1,4 +1,4 @@
-//! Pairs of cost and error that are plotted against each other.
+//! Pairs of a cost and an error measure that are plotted against each other.
 
 use crate::report::Axis;
 use htex_format::By;

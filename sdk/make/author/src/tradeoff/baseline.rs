@@ -1,4 +1,5 @@
-//! The two baselines of a sweep: the quantised spectrum, and the recording itself.
+//! The two baselines with which a sweep compares models: the quantised spectrum, and the recording
+//! itself.
 
 use htex_dsp::grid::{Band, level_rms};
 use htex_dsp::resample::Resampler;

@@ -1,4 +1,5 @@
-//! Contenders: everything that can be fitted to a recording, stored and played.
+//! Contenders of a trade-off: models and other representations that can be fitted to a recording,
+//! stored and played.
 
 use crate::{AuthorError, Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;

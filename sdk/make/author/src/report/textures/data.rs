@@ -9,8 +9,7 @@ pub struct TextureReport {
     pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
-    /// For each model, the number of textures whose error is below the difference threshold; may be
-    /// empty.
+    /// For each model, counts of textures with small errors; may be empty.
     pub shares: Vec<Share>,
     /// Further pictures as SVG, shown before the spectra.
     pub pictures: Vec<String>,
@@ -18,16 +17,18 @@ pub struct TextureReport {
     pub command: String,
 }
 
-/// For how many textures a model's error is below the difference threshold, and for how many it is
-/// within the recording's own variation.
+/// Counts for one model: textures whose error is below the difference threshold, and textures whose
+/// error is within the recording's own variation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
     /// The model's short name.
     pub short_name: String,
     pub textures: usize,
-    /// Textures whose difference is below the difference threshold in every third octave.
+    /// Textures whose difference is below the difference threshold, in every third octave and in
+    /// total.
     pub below_difference_threshold: usize,
-    /// The same count for a person with a sensitive finger.
+    /// Textures whose difference is below the difference threshold of a person with a sensitive
+    /// finger.
     pub below_if_sensitive: usize,
     /// Textures whose nine-band error is at or below the recording's repeatability.
     pub within_repeatability: usize,
@@ -41,7 +42,8 @@ pub struct Measure {
     /// Whether the measure is a correlation, for which 1 is best. Otherwise it is an error in
     /// decibels, for which 0 is best.
     pub is_correlation: bool,
-    /// Whether the measure is compared with the recording's own repeatability.
+    /// Whether the table also shows the recording's own repeatability, for comparison with the
+    /// measure.
     pub repeats: bool,
 }
 
@@ -56,8 +58,8 @@ pub struct Texture {
     pub unit: String,
     /// Speed and force as text: `"80 mm/s, 0.40 N"`.
     pub condition: String,
-    /// Whether a finger or a tool slid over the texture, and how frequencies and level follow
-    /// motions that were not recorded, as a text. May be empty.
+    /// Text that says whether a finger or a tool slid over the texture, and how frequencies and
+    /// level follow motions that were not recorded. May be empty.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
@@ -80,14 +82,15 @@ pub struct Texture {
 pub struct ModelResult {
     /// The model's display name: `"sBeta"`.
     pub model: String,
-    /// The model's short name, which decides in which column it is: `"sbeta"`.
+    /// The model's short name, such as `"sbeta"`. The model's results are in the column with this
+    /// name.
     pub short_name: String,
     /// A CSS colour: [`model_color`](crate::report::model_color).
     pub color: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
-    /// The values of the report's measures, in their order. Unknown values at the end may be left
-    /// out.
+    /// The values of the report's measures, in the order of [`TextureReport::measures`]. Unknown
+    /// values at the end may be left out.
     pub measured: Vec<Option<f64>>,
     /// Text below the model's spectrum.
     pub note: String,
@@ -96,7 +99,7 @@ pub struct ModelResult {
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
     /// For a model that is a sum of sinusoids, the frequency (hertz) and amplitude (in the
-    /// texture's unit) of each sinusoid. They are drawn instead of the magnitude.
+    /// texture's unit) of each sinusoid. The sinusoids are drawn instead of the magnitude.
     pub lines: Option<Vec<(f64, f64)>>,
 }
 

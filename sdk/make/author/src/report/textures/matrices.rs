@@ -1,4 +1,5 @@
-//! Tables of errors: textures by models, and for each texture models by bands.
+//! Tables of errors. For each measure, one table of textures by models; for each texture, one table
+//! of models by bands.
 
 use super::data::{Measure, ModelResult, Texture, TextureReport};
 use crate::report::markup::Element;

@@ -1,5 +1,5 @@
-//! The spectra of each texture in a row: first the recording by itself, then the recording overlaid
-//! with each model.
+//! The spectra of each texture in a row. The first picture shows only the recording; each further
+//! picture shows the recording overlaid with one model.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::report::axis::Axis;

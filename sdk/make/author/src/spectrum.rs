@@ -111,12 +111,13 @@ pub struct TextureSpectrum {
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability, decibels: how much two such recordings would differ. It is the RMS over nine
-    /// bands of the difference between the spectra of odd and even blocks of time, divided by √2.
+    /// Repeatability, decibels: the difference to expect between the spectra of two such
+    /// recordings. It is the RMS over nine bands of the difference between the spectra of odd and
+    /// even blocks of time, divided by √2.
     ///
-    /// The stretches that are read are cut into at least four equal blocks of 0.2 to 1 s, which
-    /// share no sample. A segment in the middle of a sweep is one block. `None` if there are fewer
-    /// than four such blocks, or if half of them are silent.
+    /// For this, the read parts of the recordings are cut into blocks of 0.2 to 1 s, which share no
+    /// sample. A segment in the middle of a sweep is one block. `None` if there are fewer than four
+    /// blocks, or if half of the blocks are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Assembles the results of a build: textures, library, report, catalogue.
+//! Assembles the results of a build: the textures, the library, the report and the catalogue.
 
 use std::collections::BTreeSet;
 use std::fs;

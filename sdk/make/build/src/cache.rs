@@ -1,9 +1,9 @@
-//! The cache of job results, by key. Entries are authenticated ([`StateFolder`]). A result that
-//! comes from somebody else, or that a crash left incomplete, is not used; its job runs again.
-//! Entries are not flushed to disk one by one.
+//! The cache of job results. A result is found by the key of its job. Entries are authenticated
+//! ([`StateFolder`]). If an entry was written by another user, or a crash left it incomplete, the
+//! entry is not used and its job runs again. Entries are not flushed to disk one by one.
 //!
-//! An entry that no texture uses any more stays for [`UNUSED`]. So a user can try a setting and
-//! undo it without a new fit.
+//! An entry that no texture uses any more stays for the time [`UNUSED`]. A user can therefore try a
+//! setting and undo the change without a new fit.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -3,12 +3,12 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
-/// Error that stops a build. No existing file is lost, and finished fits are stored for the next
+/// Error that stops a build. Existing files are not lost, and finished fits are stored for the next
 /// build.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// The recipe is not TOML, or not a valid recipe. The text says what is wrong, and where.
+    /// The recipe is not TOML, or it is not a valid recipe. The text says what is wrong, and where.
     #[error("{0}")]
     Recipe(String),
     /// The recipe cannot be carried out.
@@ -25,10 +25,10 @@ pub enum BuildError {
     /// A remote file cannot be read or written.
     #[error(transparent)]
     Storage(#[from] htex_base::storage::StorageError),
-    /// Another build uses the folder.
+    /// Another build is using the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
-    /// The library would lose textures, and the options forbid this. Nothing was changed.
+    /// The library would lose textures, and the options forbid removals. Nothing was changed.
     #[error(
         "the library would lose {} textures ({}); bring back their recordings, or allow removals",
         .textures.len(), crate::named_briefly(.textures)

@@ -1,6 +1,7 @@
-//! The report of a failed build: the error, together with what an earlier build left in the folder.
-//! A program that only reads reports, such as a page of continuous integration, then sees the
-//! error. The next build still knows which files are its own.
+//! The report of a failed build: the error, together with the report of the earlier build. A
+//! program that only reads reports, such as a page of continuous integration, then sees the error.
+//! Because the earlier report is kept, the next build still knows which files in the folder come
+//! from builds.
 
 use std::path::Path;
 
@@ -10,9 +11,9 @@ use crate::dist::Dist;
 use crate::report::{REPORT, Report};
 use crate::state::{STATE, StateFolder};
 
-/// Writes an error, line by line, into the report of a folder in which a build has begun. Returns
-/// whether the error was written. The function writes nothing if no build has begun in the folder,
-/// or while another build uses it.
+/// Writes an error, line by line, into the report in a folder of results. Returns whether the error
+/// was written. Nothing is written if no build has ever begun in this folder, or while another
+/// build is using the folder.
 ///
 /// # Errors
 /// If the report cannot be written.

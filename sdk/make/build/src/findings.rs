@@ -16,7 +16,7 @@ const NAMED: usize = 3;
 /// last code stands for a sentence of a reader.
 const NOT_OF_ASSETS: [&str; 3] = ["RECORDING_UNREADABLE", "RECORDING_UNUSABLE", "RECORDING_NOTED"];
 
-/// The findings of one code in the recordings of a texture.
+/// All findings with one code in the recordings of one texture.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FindingReport {
     /// Code of the rule (`spec/recording-findings.md`).
@@ -29,7 +29,7 @@ pub struct FindingReport {
     pub message: String,
 }
 
-/// How many textures have a finding with one code. Only textures with an asset count.
+/// Number of textures that have a finding with one code. Textures without an asset are not counted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FindingShare {
     /// Severity of the finding.

@@ -1,6 +1,7 @@
 //! Gates: the requirements that an asset must meet to be in the library.
 //!
-//! The gates are applied when the results are assembled, so that a changed gate needs no new fit.
+//! The gates are applied when the results are assembled, so textures need no new fit when a gate
+//! changes.
 
 use crate::recipe::{Gates, ModelGate};
 use crate::report::{AssetReport, MissedGate};

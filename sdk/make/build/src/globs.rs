@@ -1,8 +1,8 @@
-//! Finds files by glob, local and remote.
+//! Finds local and remote files by glob.
 //!
-//! A glob comes from a recipe, which may come from anyone. The library that compiles globs is
-//! recursive, so the length and the braces of a glob are limited. The number of folder entries that
-//! are examined is also limited.
+//! Globs are in recipes, and a recipe may come from anyone. Therefore this module limits the length
+//! and the braces of a glob, because the library that compiles globs is recursive. It also limits
+//! the number of folder entries that are examined for a glob.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

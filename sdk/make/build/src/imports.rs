@@ -1,7 +1,7 @@
-//! Files of other haptic formats in a recipe. They are recognised by their extension. Signals are
-//! fitted like recordings; they need settings for full scale, speed and force. Files that state a
-//! texture become assets unchanged. The settings are those of `htex import`, under the keys of
-//! recipes.
+//! Files of other haptic formats in a recipe. The format is recognised by the file's extension. A
+//! file with a signal is fitted like a recording, and needs settings for full scale, speed and
+//! force. A file that contains a texture's parameters is converted to an asset without a fit. The
+//! settings are the same as those of `htex import`, under the keys of recipes.
 
 use std::path::Path;
 
@@ -23,9 +23,10 @@ pub enum FileKind {
     /// Recordings.
     #[default]
     Recording,
-    /// Signals of another haptic format, which are fitted.
+    /// A file of another haptic format with a signal, to which models are fitted.
     Signal,
-    /// A file of another haptic format that states a texture.
+    /// A file of another haptic format with the parameters of a texture, which becomes an asset
+    /// without a fit.
     Asset,
 }
 

@@ -1,4 +1,5 @@
-//! Finds the recordings of a rule, each with the fields that templates may use.
+//! Finds the recordings that match a rule of a recipe. Each recording has fields, which templates
+//! may use.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};

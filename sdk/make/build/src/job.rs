@@ -1,10 +1,10 @@
 //! A job: the fit or import of one texture, described as data. Equal jobs give equal bytes on any
 //! machine.
 //!
-//! Models that are installed on a machine are not used, and a key contains no paths or times. A key
-//! also does not contain the texture's name and metadata, except for the metadata that decides how
-//! the texture plays (`contact`, `law`). Name and metadata are applied to the fitted asset when the
-//! library is assembled ([`Job::apply_metadata`]).
+//! To make this true, a job does not use models that are installed on the machine, and its key
+//! depends on no folders or times. The key depends only on such metadata as affects how the texture
+//! plays (`contact`, `law`). The texture's name and its other metadata are applied to the fitted
+//! asset when the library is assembled ([`Job::apply_metadata`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -73,31 +73,32 @@ impl NamedPlugins {
     }
 }
 
-/// A job: everything that is needed to make one texture, by a fit or an import.
+/// A job: a description of everything that is needed to make one texture, by a fit or an import.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
-    /// Kind and version of the job, and the program that fits.
+    /// Version of the job format, and the program that fits the texture.
     pub program: String,
     pub texture: String,
     pub recordings: Vec<JobRecording>,
     /// What kind of files the recordings are.
     #[serde(default)]
     pub kind: FileKind,
-    /// Settings for signals, which state facts that the signals do not.
+    /// Settings that give what files with signals do not contain, such as the full scale.
     #[serde(default)]
     pub signal: SignalSettings,
-    /// How the recordings are read. `files` contains the paths of files in these settings.
+    /// How the recordings are read. Settings that are files are not used from here; their paths are
+    /// in the [`JobFile`]s of this job.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
     pub metadata: Metadata,
-    /// The frequency response of the setup.
+    /// The file with the frequency response of the recording setup.
     pub response: Option<JobFile>,
     pub plugins: Vec<JobFile>,
-    /// The user named this many of the plugins, counted from the first. They may be native
-    /// libraries. All others are WASM modules.
+    /// Number of plugins that the user named; they are the first in `plugins`. These plugins may be
+    /// native libraries. All other plugins are WASM modules.
     #[serde(default)]
     pub named: usize,
-    /// This many of the plugins, counted from the last, are embedded in the asset.
+    /// Number of plugins that are embedded in the asset; they are the last in `plugins`.
     pub embedded: usize,
     /// Location of the recipe, if it is remote. The recipe may name its own server, but no other
     /// server on this machine or network.
@@ -225,8 +226,8 @@ impl Job {
         Ok((key, job))
     }
 
-    /// Returns the key of this job's result: a hash of everything that its bytes depend on. The
-    /// names and contents of files are part of it, but their folders and times are not.
+    /// Returns the key of this job's result: a hash of everything that the result's bytes depend
+    /// on. The key depends on the names and contents of files, but not on their folders and times.
     pub fn key(&self) -> String {
         let parts = serde_json::json!([JOB, self.parts()]);
         hash_of(&parts)
@@ -297,11 +298,12 @@ impl Job {
         self.recordings.iter().map(|r| r.file.hash.stamp.bytes).sum()
     }
 
-    /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be
-    /// used, or a model that fails, is also a result: [`Outcome::Refused`].
+    /// Reads the recordings, fits the models, and returns the result with the asset. If a recording
+    /// cannot be used or a model fails, this is not an error; the result then has the outcome
+    /// [`Outcome::Refused`].
     ///
     /// # Errors
-    /// If a file cannot be read, or differs from the file that was hashed.
+    /// If a file cannot be read, or has changed since it was hashed.
     pub fn run(&self, workbench: &mut Workbench) -> Result<JobResult, BuildError> {
         let Some(copied) = self.copied(&workbench.remote)? else {
             return self.run_here(workbench);
@@ -382,7 +384,7 @@ fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
     })
 }
 
-/// The models with which a thread fits. They are loaded once for each set of plugins.
+/// The loaded models of a thread that runs jobs. Models are loaded once for each set of plugins.
 #[derive(Debug)]
 pub struct Workbench {
     limits: WasmLimits,
@@ -398,7 +400,8 @@ impl Workbench {
         Self { limits, remote: Arc::new(RemoteFiles::temporary(None)), loaded: None }
     }
 
-    /// Returns a workbench for a job of another process, whose recipe may name its own server.
+    /// Returns a workbench for a job that another process planned. Remote files of the job may be
+    /// on the server from which the recipe comes ([`Job::origin`]).
     ///
     /// # Errors
     /// If the job's origin is not a location.

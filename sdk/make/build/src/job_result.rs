@@ -1,4 +1,5 @@
-//! The result of a job and its encoding: a line of JSON with lengths and a hash, then the parts.
+//! The result of a job and its encoding. The encoding is a line of JSON with the record, the
+//! lengths of the parts and a hash, followed by the parts (asset and sound).
 
 use std::collections::BTreeMap;
 
@@ -29,13 +30,13 @@ pub struct Record {
     pub outcome: Outcome,
     /// Number of segments of each condition.
     pub segments: Vec<usize>,
-    /// For each model, how much of the difference from the recordings is felt at the worst
-    /// condition.
+    /// For each model, how much of the difference from the recordings is felt. Each number is the
+    /// worst over all conditions.
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,
-    /// The recorded spectrum of the first condition. If the texture comes unchanged from a file of
-    /// another format, the spectrum of its default condition.
+    /// The recorded spectrum of the first condition. For a texture that was imported without a fit,
+    /// this is the spectrum of the default condition.
     pub thumbnail: Thumbnail,
 }
 
@@ -43,7 +44,7 @@ pub struct Record {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// There is an asset.
+    /// The texture was fitted or imported, and the result contains its asset.
     Fitted,
     /// The gate `strict` refused the texture, because its recordings have findings.
     NotStrict(String),

@@ -1,5 +1,5 @@
-//! Finds keys in a recipe that its schema does not have. Without this check, a misspelt key would
-//! silently have no effect.
+//! Finds keys in a recipe that the recipe's schema does not define. Without this check, a misspelt
+//! key would silently have no effect.
 
 use htex_base::files::toml::lines_of_keys;
 use serde_json::Value;

@@ -1,13 +1,14 @@
 //! Builds a checked library of textures from recordings, as described by a recipe.
 //!
 //! In place of a recording, a recipe may name a file of another haptic format (`imports`). If the
-//! file contains a signal, the build fits models to the signal. If the file states a texture, the
-//! build uses this texture unchanged.
+//! file contains a signal, the build fits models to the signal. If the file contains the parameters
+//! of a texture, the build converts the file to an asset without a fit.
 //!
-//! A recipe is data, and it determines the result of the build. Each texture has a key. The key is
-//! the hash of everything that the texture's bytes depend on: the contents of its recordings, its
-//! settings, the program and the plugins. Results are stored by key. This one mechanism lets a
-//! killed build continue, a repeated build make only what changed, and many machines share a build
+//! A recipe is data and contains no code. Together with the files that it names, it determines the
+//! result of the build. Each texture has a key. The key is the hash of everything that the
+//! texture's bytes depend on: the contents of its recordings, its settings, the program and the
+//! plugins. Results are stored by key. Because of the stored results, a killed build can continue,
+//! a repeated build makes only textures that changed, and many machines can share a build
 //! ([`Build::pending`], [`Job::run`], [`Build::store`]).
 //!
 //! These modules lead from recordings to a library:

@@ -44,19 +44,19 @@ pub struct BuildOptions {
     /// Program and version, for the assets' provenance. Textures that another program or version
     /// has fitted are fitted again.
     pub program: String,
-    /// Folder of the browser package with which the catalogue plays textures. Without it, the
-    /// catalogue has short sounds.
+    /// Folder of the browser package with which the catalogue plays textures. If `None`, the
+    /// catalogue plays short recorded sounds of the textures.
     pub browser_package: Option<PathBuf>,
-    /// Plugins that the user names: WASM modules, or native libraries, which run with all rights of
-    /// this program. A recipe can only name WASM modules.
+    /// Plugins that the user names. They can be WASM modules or native libraries; native libraries
+    /// run with all rights of this program. A recipe can name only WASM modules.
     pub plugins: Vec<PathBuf>,
     /// Whether to refuse to remove textures of the previous library.
     pub no_removals: bool,
     /// The URI to which the results are copied. If there is no previous library on this machine,
-    /// the one at this URI is used for comparison.
+    /// the library at this URI is used to find removed textures.
     pub published: Option<Location>,
-    /// Whether to remove a stored result immediately when no texture uses it any more. Otherwise it
-    /// stays for 30 days.
+    /// Whether to remove a stored result as soon as no texture uses it. If false, unused results
+    /// stay for 30 days.
     pub prune: bool,
 }
 
@@ -81,7 +81,7 @@ impl BuildOptions {
     }
 }
 
-/// A planned build. All files are hashed, so it is known which textures already have results.
+/// A planned build. All files are hashed, so the build knows which textures already have results.
 #[derive(Debug)]
 pub struct Build {
     options: BuildOptions,
@@ -106,15 +106,15 @@ pub struct Build {
 }
 
 impl Build {
-    /// Reads a recipe, finds and hashes its recordings, and compares them with the stored results
-    /// in the folder `output`. The folder is created if it is missing.
+    /// Reads a recipe, finds and hashes its recordings, and looks up the stored results in the
+    /// folder `output`. The folder is created if it is missing.
     ///
     /// # Errors
     /// - The errors of [`Recipe::open`].
     /// - A glob matches nothing, a template or a pattern fails, a name is not valid, or two
     ///   recordings of a texture have different settings.
-    /// - The library would lose textures and the options forbid it.
-    /// - A file cannot be read, the folder cannot be written, or another build uses it.
+    /// - The library would lose textures and the options forbid removals.
+    /// - A file cannot be read, or the folder cannot be written or is in use by another build.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
         let RecipeInputs { named, plan, hashes, remote, kept, lock } =
             RecipeInputs::new(recipe, output, &options.plugins, options.missing())?;
@@ -169,11 +169,11 @@ impl Build {
         })
     }
 
-    /// Checks everything that can be known before a fit: that the plugins can be loaded, that the
-    /// settings belong to existing models, and that gates name models that are fitted.
+    /// Checks the settings before any fit. The plugins must load, the settings must belong to
+    /// existing models, and the gates must name models that are fitted.
     ///
     /// # Errors
-    /// What is wrong, with its place.
+    /// The first problem, with its place in the recipe.
     pub fn check(&self) -> Result<(), BuildError> {
         let mut workbench = self.workbench();
         let mut checked = BTreeSet::new();
@@ -228,7 +228,7 @@ impl Build {
     /// # Errors
     /// - The bytes are not the result of the job with this key.
     /// - The result cannot be written.
-    /// - The texture cannot be made, and the options do not say to keep going.
+    /// - The texture cannot be made, and [`BuildOptions::keep_going`] is false.
     pub fn store(&mut self, key: &str, bytes: &[u8]) -> Result<(), BuildError> {
         let Some(at) = self.pending.iter().position(|i| self.jobs[*i].0 == key) else {
             // Somebody else has already done the job.
@@ -244,8 +244,9 @@ impl Build {
     /// Runs the pending jobs, several at a time. Calls `done` after each job, from any thread.
     ///
     /// # Errors
-    /// If a file cannot be read or written. Also if a texture cannot be made, and the options do
-    /// not say to keep going. The results up to the error are stored.
+    /// If a file cannot be read or written. Also if a texture cannot be made and
+    /// [`BuildOptions::keep_going`] is false. Results that were finished before the error are
+    /// stored.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
@@ -313,8 +314,8 @@ impl Build {
         Err(BuildError::at_place(&job.texture, problem))
     }
 
-    /// Writes an error, line by line, into the report of this build's folder, together with what an
-    /// earlier build left there.
+    /// Writes an error, line by line, into the report in this build's folder. The other contents of
+    /// the report stay as an earlier build wrote them.
     ///
     /// # Errors
     /// If the report cannot be written.
@@ -325,8 +326,8 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue. Returns the report.
     ///
     /// # Errors
-    /// If jobs are still pending, or a file cannot be written. Also if a texture of the previous
-    /// library is left out and the options forbid removals; in this case nothing is written.
+    /// If jobs are still pending, or if a file cannot be written. Also if a texture of the previous
+    /// library is left out although the options forbid removals; in this case, no file is written.
     pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -358,8 +359,9 @@ fn is_of_input(error: &BuildError) -> bool {
     }
 }
 
-/// Returns the files of a recipe whose hashes are not stored, so that a build would have to read
-/// them. Other processes can read them in advance with [`hash_file`] and [`remember`].
+/// Returns the files of a recipe whose hashes are not stored. A build would have to read these
+/// files. Other processes can hash the files in advance with [`hash_file`] and store the hashes
+/// with [`remember`].
 ///
 /// # Errors
 /// The errors of [`Build::open`].
@@ -377,8 +379,9 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     Ok(unknown.collect())
 }
 
-/// Checks a recipe without a build: its keys, whether its recordings exist, whether its plugins can
-/// be loaded, and its options and gates. Writes nothing. Returns the planned textures.
+/// Checks a recipe without a build, and returns the planned textures. Checks the recipe's keys,
+/// options and gates, whether its recordings exist, and whether its plugins can be loaded. Writes
+/// nothing.
 ///
 /// # Errors
 /// What is wrong, and where.
@@ -411,8 +414,8 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
 /// Hashes a local or remote file of a recipe.
 ///
 /// # Errors
-/// If the file cannot be read or changes while it is read, or if the recipe may not name its
-/// address.
+/// If the file cannot be read, if it changes while it is read, or if the recipe may not name the
+/// file's address.
 pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
     hash(file, &RemoteFiles::temporary(remote_location(recipe)?))
 }
@@ -421,7 +424,7 @@ pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
 /// the next build reads the file again.
 ///
 /// # Errors
-/// If another build uses the folder, or it cannot be written.
+/// If the folder cannot be written, or is in use by another build.
 pub fn remember(
     output: &Path,
     hashed: impl IntoIterator<Item = (PathBuf, FileHash)>,

@@ -1,5 +1,5 @@
-//! Makes the result of a job. A job fits recordings or signals, or imports the texture that a file
-//! of another format states.
+//! Makes the result of a job. A job fits models to recordings or signals, or imports a texture from
+//! a file of another format.
 
 use std::collections::BTreeMap;
 use std::error::Error;

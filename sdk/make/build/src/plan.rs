@@ -34,7 +34,7 @@ pub struct PlannedTexture {
     pub kind: FileKind,
     /// Settings of the texture. Paths in them are relative to the recipe.
     pub settings: Settings,
-    /// Metadata of the texture, in which the templates are filled.
+    /// Metadata of the texture. Placeholders of templates are already replaced by values.
     pub metadata: Metadata,
     /// The requirements that the texture's asset must meet.
     pub gates: Gates,

@@ -1,7 +1,7 @@
-//! Publishes results to a URI. A build writes them to a local folder, and this module copies them
-//! from there.
+//! Publishes the results of a build to a URI. A build writes its results to a local folder, and
+//! this module copies them to the URI.
 //!
-//! It copies them only when all are complete, so that a half-built library is never visible.
+//! Nothing is copied until all results are complete, so that users never see a half-built library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
@@ -31,7 +31,7 @@ const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Number of copies at the same time. Most of the time they wait for the network.
 const AT_ONCE: usize = 8;
 
-/// Where the results of a build go.
+/// Where the results of a build are written: a local folder, or a local folder and a URI.
 ///
 /// ```
 /// use htex_build::Destination;
@@ -61,12 +61,13 @@ struct CopiedFile {
 }
 
 impl Destination {
-    /// Parses an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a
-    /// URI are made in the folder `work`, which also holds what the next build needs. By default it
-    /// is a folder in the user's cache.
+    /// Parses an argument: a folder, or a folder's URI (`s3://`, `gs://`, `az://`). Results for a
+    /// URI are made in the folder `work`, which also contains stored results for the next build. If
+    /// `work` is `None`, a folder in the user's cache is used.
     ///
     /// # Errors
-    /// The URI is malformed or read-only, or there is no `work` and the environment names no cache.
+    /// If the URI is malformed or read-only. Also if `work` is `None` and the environment names no
+    /// folder for caches.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
         let Some(location) = remote_location(Path::new(argument))? else {
             let location = Location::parse(argument)?;
@@ -86,22 +87,22 @@ impl Destination {
         &self.folder
     }
 
-    /// Returns where the results finally are: the folder or the URI.
+    /// Returns the final location of the results: the URI or, if there is none, the folder.
     pub fn results(&self) -> Location {
         let folder = || Location::from(self.folder.clone());
         self.remote.clone().unwrap_or_else(folder)
     }
 
-    /// Returns the URI to which the results are copied.
+    /// Returns the URI to which the results are copied, if there is one.
     pub fn remote(&self) -> Option<&Location> {
         self.remote.as_ref()
     }
 
-    /// Tests whether files at the URI, if there is one, can be listed, written and removed. It
-    /// writes a file and removes it again. So errors are found before hours of fitting.
+    /// Tests whether a file can be written at the URI and removed again. This finds errors before
+    /// hours of fitting. Without a URI, does nothing.
     ///
     /// # Errors
-    /// If one of these operations fails.
+    /// If the file cannot be written or removed.
     pub fn try_out(&self) -> Result<(), BuildError> {
         let Some(to) = &self.remote else {
             return Ok(());
@@ -111,14 +112,14 @@ impl Destination {
         Ok(storage.remove(&file)?)
     }
 
-    /// Copies the results to the URI, if there is one. Only files that differ from the files there
-    /// are copied: textures first, report and catalogue last. If an earlier build copied a file
-    /// that this build has not made, the file is removed at the URI. Returns the number of copied
-    /// files.
+    /// Copies the results to the URI, if there is one. Only files that differ from the files at the
+    /// URI are copied: textures first, report and catalogue last. Files that an earlier build
+    /// copied to the URI and that this build has not made are removed from it. Returns the number
+    /// of copied files.
     ///
     /// # Errors
-    /// If a file cannot be read or written. The next call then copies every file that is not known
-    /// to be at the URI.
+    /// If a file cannot be read or written. The next call then copies the files that are not yet at
+    /// the URI.
     pub fn publish(&self) -> Result<usize, BuildError> {
         match &self.remote {
             Some(to) => Publishing::new(&self.folder, to)?.run(),

@@ -1,5 +1,5 @@
-//! Explains why a texture has to be fitted. To find the reason, it compares what the fit depends on
-//! with the last finished build.
+//! Explains why a texture has to be fitted. To find the reason, the current inputs of the fit are
+//! compared with the inputs in the last finished build.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,10 +20,10 @@ const MOST_BYTES: u64 = 1 << 30;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Why {
-    /// No build of this user has fitted it in this folder yet.
+    /// No build of this user has fitted the texture in this folder yet.
     New,
-    /// These parts have changed: `recordings`, `reading`, `options`, `plugins`, `program`, in this
-    /// order.
+    /// Inputs of the fit have changed. The list contains the changed inputs among `recordings`,
+    /// `reading`, `options`, `plugins` and `program`, in this order.
     Changed(Vec<&'static str>),
     /// The stored result is damaged, or belongs to another user.
     Unusable,

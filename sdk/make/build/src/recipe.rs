@@ -18,7 +18,7 @@ use crate::remote::{RemoteFiles, joined, remote_location};
 /// Largest size of a recipe, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// A recipe: recordings, and how to make a library from them.
+/// A recipe: which recordings to use, and how to make a library from them.
 ///
 /// ```
 /// let recipe = htex_build::Recipe::parse(r#"
@@ -44,7 +44,8 @@ pub struct Recipe {
     /// Rules that find recordings, with the settings of their textures.
     #[schemars(length(min = 1))]
     pub textures: Vec<Textures>,
-    /// Settings for individual textures. Later overrides take precedence over earlier ones.
+    /// Settings for individual textures. If several overrides match a texture, later overrides take
+    /// precedence over earlier ones.
     #[serde(default)]
     pub overrides: Vec<Override>,
 }
@@ -56,8 +57,8 @@ pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
     /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
-    /// the recipe. A native library runs with all rights, so only the user can name it:
-    /// `htex build --plugin`.
+    /// the recipe. Native libraries run with all rights, so a recipe cannot name them; only the
+    /// user can, with `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }
@@ -72,14 +73,15 @@ pub struct Textures {
     #[serde(default, deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
-    /// A CSV with a row for each recording. The column `recording` contains the path of the file,
-    /// relative to the table. Other columns are fields for templates. If the recipe does not state
-    /// a name, speed or force, the columns `name`, `speed_mm_s` and `force_n` are used.
+    /// A CSV file with a row for each recording. The column `recording` contains the path of the
+    /// recording's file, relative to the CSV file. Other columns are fields for templates. If the
+    /// recipe does not state a name, speed or force, the columns `name`, `speed_mm_s` and `force_n`
+    /// are used.
     #[serde(default)]
     pub table: Option<PathBuf>,
-    /// A regular expression with named groups, which become fields for templates. It is matched
-    /// against each file's path relative to the recipe, with `/` between folders. A file that it
-    /// does not match is an error.
+    /// A regular expression with named groups, which become fields for templates. The expression is
+    /// matched against each file's path relative to the recipe, with `/` between folders. It is an
+    /// error if the expression does not match a file.
     #[serde(default)]
     pub pattern: Option<String>,
     /// Name of the texture, as a template; `{stem}` by default. All recordings with the same name
@@ -113,7 +115,8 @@ pub struct Settings {
     /// template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
-    /// Facts that signals of other haptic formats do not state.
+    /// Properties that files with signals in other haptic formats do not contain, such as the full
+    /// scale.
     #[serde(flatten)]
     pub signal: SignalSettings,
     /// How models are fitted.
@@ -174,23 +177,23 @@ pub struct Gates {
     /// number for all models, or a table with a number for each model.
     pub max_band_error_db: Option<ModelGate>,
     /// Largest allowed felt difference between a representation and its recording, at any
-    /// condition, decibels. It is the difference of the levels above the detection threshold, in
-    /// each third-octave band and for all bands together. A difference below 1.584 dB (the
-    /// difference threshold) is too small to notice. One number for all models, or a table with a
-    /// number for each model.
+    /// condition, decibels. The felt difference is the difference of the levels above the detection
+    /// threshold. The gate applies to each third-octave band and to all bands together. A
+    /// difference below 1.584 dB (the difference threshold) is too small to notice. One number for
+    /// all models, or a table with a number for each model.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest allowed repeatability value of a condition, decibels: the RMS over nine bands of the
-    /// difference between odd and even blocks of time, divided by √2.
+    /// Largest allowed repeatability value of a condition, decibels. This value is the RMS over
+    /// nine bands of the difference between odd and even blocks of time, divided by √2.
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that no recording may have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
     /// Smallest number of 0.2 s segments that every condition must have.
     pub min_segments: Option<usize>,
-    /// Whether recordings with findings that are errors or warnings are forbidden. Such findings
-    /// are, for example, an unsteady motion or clipping.
+    /// Whether to refuse recordings with findings that are errors or warnings, such as an unsteady
+    /// motion or clipping.
     pub strict: Option<bool>,
-    /// Whether every texture must state a licence. The default is true for files of other haptic
-    /// formats, and false for recordings.
+    /// Whether every texture must state a licence. By default, textures from files of other haptic
+    /// formats must, and textures from recordings need not.
     pub license: Option<bool>,
     /// Largest allowed size of the asset, bytes.
     pub max_bytes: Option<u64>,
@@ -210,8 +213,8 @@ impl Recipe {
     /// Parses the text of a recipe.
     ///
     /// # Errors
-    /// If the text is not TOML, has other keys or values than a recipe, or has a gate for a code
-    /// that does not exist.
+    /// If the text is not TOML, has keys or values that a recipe cannot have, or denies a code of
+    /// findings that does not exist.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;

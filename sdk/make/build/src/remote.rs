@@ -1,8 +1,9 @@
-//! Remote files: paths in a recipe that are URIs of a web server or an object store. They are
-//! listed, hashed, and copied for the job that reads them.
+//! Remote files of a recipe. Their paths are URIs of a web server or an object store. This module
+//! lists and hashes remote files, and copies them for the job that reads them.
 //!
-//! A list request reports the versions of the files. As with local files, the key of a job contains
-//! the hash of the contents. The machine that runs the job reads a local copy.
+//! Listing the files also gives their versions, which show whether a file has changed. As with
+//! local files, the key of a job depends on the hash of a file's contents. The machine that runs
+//! the job reads a local copy of the file.
 
 use std::collections::BTreeMap;
 use std::fs::File;

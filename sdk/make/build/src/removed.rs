@@ -1,8 +1,8 @@
-//! Textures that the library had before this build and lacks after it.
+//! Textures that the library contained before this build and no longer contains after the build.
 //!
-//! A glob that matches fewer files than before is not an error. So if a folder is moved, its
-//! textures are removed from the library. The build reports this, or refuses it if the options
-//! forbid removals.
+//! It is not an error if a glob matches fewer files than in the last build. If a folder is moved,
+//! the textures from its recordings are therefore removed from the library. The build reports the
+//! removals or, if the options forbid removals, stops with an error.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,5 +1,6 @@
-//! The report of a build: `build-report.json`. It contains no times and no folders, so equal builds
-//! have equal reports, except for the textures that this build removed.
+//! The report of a build: `build-report.json`. The report contains no times and no folders, so
+//! equal builds have equal reports. The only exception is the list of removed textures, which also
+//! depends on the earlier build.
 
 use std::collections::BTreeMap;
 
@@ -24,8 +25,8 @@ pub struct Report {
     pub report: String,
     /// Program and version that made the build.
     pub program: String,
-    /// The error that ended the build, line by line. All other fields then describe what an earlier
-    /// build left, if there was one.
+    /// The error that ended the build, line by line. If there was an error, all other fields come
+    /// from the report of the earlier build, if there is one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library that the build made.
@@ -34,9 +35,9 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// For each model (by id), the number of textures in the library whose difference from the
-    /// recordings is below the difference threshold at all conditions. A second number counts the
-    /// textures whose difference is within the variation of their recordings.
+    /// For each model (by id), counts of the textures in the library whose difference from the
+    /// recordings is small at all conditions: below the difference threshold, or within the
+    /// variation of their recordings.
     pub felt_shares: BTreeMap<String, FeltShare>,
     /// For each code of a finding, the textures with this finding.
     pub findings: BTreeMap<String, FindingShare>,
@@ -105,7 +106,7 @@ pub struct RecordingReport {
 /// A gate that a texture misses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MissedGate {
-    /// The key of the gate in the recipe, or `fit` if there is no asset.
+    /// The key of the gate in the recipe, or `fit` if the texture could not be fitted.
     pub gate: String,
     /// What is wrong, as a sentence.
     pub reason: String,
@@ -138,18 +139,17 @@ pub struct AssetReport {
     /// Smallest and largest normal force of the conditions, newtons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<[f64; 2]>,
-    /// Smallest number of segments of a condition; 0 if the texture comes unchanged from a file of
-    /// another format.
+    /// Smallest number of segments of a condition; 0 for a texture that was imported without a fit.
     pub segments: usize,
-    /// Largest repeatability value of a condition, decibels: the RMS over nine bands of the
-    /// difference between odd and even blocks of time, divided by √2. Errors near or below it are
-    /// within the recordings' own variation.
+    /// Largest repeatability value of a condition, decibels. This value is the RMS over nine bands
+    /// of the difference between odd and even blocks of time, divided by √2. Errors near or below
+    /// this value are within the recordings' own variation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
     /// Largest nine-band RMS error over all conditions, decibels, for each model (by id).
     pub band_error_rms_db: BTreeMap<String, f64>,
-    /// How much of the difference from the recordings is felt at the worst condition, for each
-    /// model (by id).
+    /// For each model (by id), how much of the difference from the recordings is felt. Each number
+    /// is the worst over all conditions.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
     /// Findings about the texture's recordings, grouped by code.
@@ -158,9 +158,10 @@ pub struct AssetReport {
     /// Warnings of the fit, including those from findings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition. If the texture comes unchanged from a file of
-    /// another format, the spectrum of its default condition. It has 48 points evenly spaced in log
-    /// frequency. The value 63 stands for the largest magnitude, and 0 for 40 dB below it or less.
+    /// The recorded spectrum of the first condition. For a texture that was imported without a fit,
+    /// this is the spectrum of the default condition. The spectrum has 48 points evenly spaced in
+    /// log frequency. The value 63 stands for the largest magnitude, and 0 for 40 dB below it or
+    /// less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
 }

@@ -1,10 +1,11 @@
 //! What a build stores for the next build: the folder `.htex-build` in the folder of the results.
 //!
-//! The results may come from somebody else. Their `.htex-build` could then make false claims about
-//! the fit of a recording, hashes of files, or what was published. So each file in it begins with a
-//! keyed hash of its name and content, with a key of this user ([`htex_base::files::Key`]). Files
-//! that this user has not made are not used, and are made again. If there is no folder for a user's
-//! key, a temporary key is used for this process.
+//! A user may have received the folder of the results from somebody else. Its `.htex-build` could
+//! contain false fits, false hashes of files, or a false list of published files. Therefore each
+//! file in `.htex-build` begins with a hash of its name and content, keyed with a key of this user
+//! ([`htex_base::files::Key`]). A file without a valid hash is ignored, and the build makes the
+//! file again. If there is no folder in which to store the user's key, this process uses a
+//! temporary key.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -10,12 +10,13 @@ use serde::{Serialize, Serializer};
 pub enum ErrorAxis {
     /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
     /// with the even blocks in third octaves. The unit is the difference between the odd and the
-    /// even blocks themselves, so 1 is as good as a second recording.
+    /// even blocks of the recording, so a model with an error of 1 is as good as a second
+    /// recording.
     #[default]
     HeldOut,
-    /// Error relative to the spectrum to which the setting was fitted, in decibels. When errors are
-    /// plotted against bytes, it is measured on the model's magnitudes; against time, on rendered
-    /// samples.
+    /// Error relative to the spectrum to which the setting was fitted, in decibels. In a comparison
+    /// with the size in bytes, the error is measured on the model's magnitudes. In a comparison
+    /// with the time, it is measured on rendered samples.
     Fitted(ErrorMeasure),
 }
 

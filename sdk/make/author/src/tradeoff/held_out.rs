@@ -1,5 +1,5 @@
-//! The halves of a recording for held-out errors: contenders are fitted to the odd blocks and
-//! compared with the even blocks.
+//! The two halves of a recording from which held-out errors are measured. Contenders are fitted to
+//! the odd blocks and compared with the even blocks.
 
 use crate::{AuthorError, OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
 

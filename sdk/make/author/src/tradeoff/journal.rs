@@ -1,4 +1,4 @@
-//! Journal of a sweep, with which an interrupted sweep can continue.
+//! Journal of a sweep. It stores finished steps, so that an interrupted sweep can continue.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
@@ -43,7 +43,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates a journal. The first sweep that uses it reads its file.
+    /// Creates a journal for the file `path`. The file is not read here but when a sweep uses the
+    /// journal.
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), file: None, entries: Vec::new() }
     }
@@ -108,10 +109,10 @@ impl Journal {
         self.with_path(self.file.as_ref().map_or(Ok(()), write))
     }
 
-    /// Removes the file, once the results are written elsewhere.
+    /// Removes the journal's file. Call this after the results have been written elsewhere.
     ///
     /// # Errors
-    /// When it cannot be removed.
+    /// When the file cannot be removed.
     pub fn discard(self) -> Result<(), AuthorError> {
         let removed = self.place().and_then(|(own, name)| own.remove(&name));
         self.with_path(removed)

@@ -9,7 +9,7 @@ use crate::tradeoff::point::Point;
 /// Smallest error reduction that counts as a step up, in the error's unit.
 const STEP: f64 = 0.05;
 
-/// The knee of a front, and the next step up from it.
+/// The knee of a Pareto front, and the next more accurate setting on the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Knee {
     /// The recording, or the median of all recordings.
@@ -23,19 +23,19 @@ pub struct Knee {
     /// Cost at the knee, in bytes or ns per sample.
     pub cost: f64,
     pub error: ErrorAxis,
-    /// Error at the knee, in decibels. The unit of a held-out error is the error of a second
-    /// recording.
+    /// Error at the knee. A held-out error is in units of the error of a second recording, all
+    /// other errors are in decibels.
     pub error_value: f64,
-    /// Model and setting of the next step up, which reduces the error by at least 0.05; `None` if
-    /// there is none.
+    /// Model and setting of the next step up: the cheapest setting on the front with an error that
+    /// is lower by at least 0.05. `None` if there is no such setting.
     pub next: Option<String>,
-    /// A sentence that describes the knee, and the gain and cost of the next step.
+    /// A sentence that describes the knee, and the lower error and higher cost of the next step.
     pub words: String,
 }
 
-/// Returns the knee of a front that is sorted by increasing cost: the point furthest below the
-/// straight line between the front's ends, with cost on a logarithmic axis. For a front of one or
-/// two points, it is the first point.
+/// Returns the index of a front's knee. The points (cost, error) must be sorted by increasing cost.
+/// The knee is the point furthest below the straight line between the front's ends, with cost on a
+/// logarithmic axis. For a front of one or two points, the knee is the first point.
 pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
     let across = |cost: f64| libm::log(cost / low) / libm::log(high / low);

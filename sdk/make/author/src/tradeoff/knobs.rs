@@ -1,6 +1,6 @@
-//! The knobs of a sweep: the settings that it varies. These are options for storing and playing,
-//! and the fit options of models. If a model's descriptor lists no values for an option
-//! ([`FitOption::sweep`]), this module chooses them.
+//! The knobs of a sweep, i.e. the settings that the sweep varies. These are options for storing and
+//! playing, and the fit options of models. If a model's descriptor lists no values for a fit option
+//! ([`FitOption::sweep`]), this module chooses the values.
 
 use htex_host::FitOption;
 

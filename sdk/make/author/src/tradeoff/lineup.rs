@@ -1,4 +1,4 @@
-//! The contenders of a sweep, and the key of its results.
+//! The contenders of a sweep, and the key under which the sweep's results are stored.
 
 use std::path::Path;
 

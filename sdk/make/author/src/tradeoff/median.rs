@@ -1,4 +1,5 @@
-//! Medians of each setting over several recordings, and the shares of recordings.
+//! Medians of each setting's measurements over several recordings, and shares of recordings with a
+//! small difference.
 
 use std::collections::BTreeMap;
 

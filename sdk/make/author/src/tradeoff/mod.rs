@@ -1,10 +1,11 @@
-//! Accuracy against cost: measures models and their options on recordings, and compares their
-//! errors with their size in bytes and their time.
+//! Accuracy against cost. Measures models and their options on recordings, and compares the errors
+//! with the size in bytes and with the computing time.
 //!
-//! [`sweep`] fits, measures and times all settings on some [`Subject`]s: the options of models,
-//! options for playing (knobs), and two baselines for comparison. [`Tradeoff::new`] finds fronts,
-//! knees and warnings in the result; [`page`] and [`csv`] write it. An interrupted sweep continues
-//! from its [`Journal`].
+//! [`sweep`] fits, measures and times all settings on recordings ([`Subject`]). A setting is a
+//! value for each knob: the fit options of a model, and options for storing and playing. Two
+//! baselines are also measured, for comparison. [`Tradeoff::new`] finds fronts, knees and warnings
+//! in the result. [`page`] and [`csv`] write this evaluation. An interrupted sweep continues from
+//! its [`Journal`].
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -51,21 +51,21 @@ impl Machine {
     }
 }
 
-/// A recording that the report is about.
+/// A recording of the sweep, as listed in the report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordingSummary {
     pub name: String,
     /// Whether the recording comes from a simulator.
     pub simulated: bool,
-    /// Repeatability of the recording: nine-band RMS, dB.
+    /// Repeatability of the recording (RMS over nine bands), dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Number of blocks, odd and even together, in the stretches of the recording that are read.
-    /// The even blocks are held out. `None` if there are too few.
+    /// Total number of odd and even blocks of time in the read parts of the recording. The even
+    /// blocks are held out. `None` if there are too few blocks.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,
-    /// Third-octave difference between the odd and the even blocks, dB. It is the unit of the
-    /// held-out error.
+    /// Third-octave difference between the odd and the even blocks, dB. The held-out error is given
+    /// in units of this difference.
     pub floor_db: Option<f64>,
 }
 
@@ -77,16 +77,16 @@ pub struct Tradeoff {
     pub machine: Machine,
     /// The error used for fronts and knees.
     pub error: ErrorAxis,
-    /// How the numbers were measured, as a text.
+    /// Text that explains how the numbers were measured.
     pub method: &'static str,
     pub recordings: Vec<RecordingSummary>,
-    /// Short names of the models, in their order.
+    /// Short names of the models, in the order of the points.
     pub models: Vec<String>,
-    /// Every setting on every recording.
+    /// The measurements of every setting on every recording.
     pub points: Vec<Point>,
     /// The medians of every setting over the recordings; empty if there is only one recording.
     pub medians: Vec<Point>,
-    /// The knees of the fronts; if there are medians, their knees come first.
+    /// The knees of the fronts. If there are medians, the knees of the medians' fronts come first.
     pub knees: Vec<Knee>,
     /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
@@ -139,7 +139,8 @@ impl Tradeoff {
         self.points.iter().filter(|p| p.recording == recording).collect()
     }
 
-    /// Returns the summary: the medians, or the points of the only recording.
+    /// Returns the points of the summary: the medians or, if there is only one recording, its
+    /// points.
     pub fn summary(&self) -> Vec<&Point> {
         let points = if self.medians.is_empty() { &self.points } else { &self.medians };
         points.iter().collect()

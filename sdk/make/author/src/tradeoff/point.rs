@@ -14,7 +14,7 @@ use crate::tradeoff::{Setting, Subject};
 
 /// Model name of the first baseline: the spectrum, quantised to one byte per bin.
 pub(crate) const QUANTISED: &str = "quantised-spectrum";
-/// Model name of the second baseline: the recording.
+/// Name used in place of a model's name for the baseline that plays the recording.
 pub const RECORDING: &str = "recording";
 
 /// Cost and accuracy of one setting on one recording.
@@ -25,7 +25,7 @@ pub struct Point {
     pub model: String,
     /// The values of all knobs, including those at their defaults.
     pub knobs: BTreeMap<String, Value>,
-    /// The knobs that are not at their defaults, as text.
+    /// The knobs whose values differ from their defaults, as text.
     pub setting: String,
     #[serde(skip)]
     pub how: Setting,
@@ -44,25 +44,26 @@ pub struct Point {
     /// Size of the stored parameters, bytes. For the recording, size of its single-precision
     /// samples.
     pub bytes: usize,
-    /// Memory that a loop or a filter takes during playback, bytes.
+    /// Memory that a stored loop or a filter needs during playback, bytes.
     pub kept_bytes: usize,
     /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
     /// with the even blocks in third octaves. The unit is the difference between the odd and the
-    /// even blocks, so 1 is as good as a second recording. `None` if there are too few blocks.
+    /// even blocks of the recording, so a model with an error of 1 is as good as a second
+    /// recording. `None` if there are too few blocks.
     pub held_out_error: Option<f64>,
     /// The held-out error in decibels.
     pub held_out_error_db: Option<f64>,
     /// The measures of the model's magnitudes: all of [`Measure::of_both`].
     #[serde(flatten, serialize_with = "of_magnitudes")]
     pub by_magnitude: Measures,
-    /// Shares of the recordings with a small difference; 0 or 1 for a single recording.
+    /// Shares of the recordings with a small difference. For a single recording, a share is 0 or 1.
     #[serde(flatten)]
     pub shares: Shares,
     /// The measures of rendered samples.
     #[serde(flatten)]
     pub by_samples: RenderedAccuracy,
-    /// Whether the point is on the Pareto front of bytes and error. Only settings that play like
-    /// the default setting are compared.
+    /// Whether the point is on the Pareto front of bytes and error. Only settings whose options for
+    /// playing have their default values are compared.
     pub on_front: bool,
     /// Whether the point is on the Pareto front of time and error. Only settings with the default
     /// block size, output rate and storage are compared.
@@ -72,15 +73,16 @@ pub struct Point {
 /// Shares of the recordings whose difference from the model's magnitudes is small, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
-    /// Share whose difference is below the difference threshold in every third octave and over all
-    /// of them together.
+    /// Share of the recordings whose difference is below the difference threshold, in every third
+    /// octave and over all third octaves together.
     #[serde(rename = "share_below_threshold")]
     pub below_threshold: f64,
-    /// The same share for a person with a sensitive finger and soft skin.
+    /// Share of the recordings whose difference is below the difference threshold of a person with
+    /// a sensitive finger and soft skin.
     #[serde(rename = "share_below_threshold_if_sensitive")]
     pub below_threshold_if_sensitive: f64,
-    /// Share whose difference is within the recording's own variation. This says nothing about what
-    /// can be felt.
+    /// Share of the recordings whose difference is within the recording's own variation. This
+    /// number does not show what can be felt.
     #[serde(rename = "share_within_repeatability")]
     pub within_repeatability: f64,
 }
@@ -119,7 +121,7 @@ pub fn others() -> impl Iterator<Item = Measure> {
 /// Accuracy of rendered samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RenderedAccuracy {
-    /// The measures over several renderings together.
+    /// The measures of several renderings, averaged to one spectrum.
     pub measures: Measures,
     /// Half the range of the nine-band errors of the individual renderings, dB.
     pub band_error_spread_db: f64,

@@ -8,8 +8,9 @@ use htex_host::LoadedModel;
 use crate::AuthorError;
 use crate::tradeoff::{ErrorAxis, Subject};
 
-/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first way is measured
-/// with all knobs, the others with the default settings.
+/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The model loaded in the first
+/// way is measured with all values of the knobs. Loaded in the other ways, it is measured only with
+/// the default settings.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Ways of loading, each with its name and the model loaded in this way; at least one.
@@ -20,13 +21,14 @@ pub struct Model {
 #[derive(Debug, Clone)]
 pub struct Request {
     pub models: Vec<Model>,
-    /// Whether to vary only one knob at a time, with three values each, and to time fewer runs.
+    /// Whether to measure less: only one knob is varied at a time, each with three values, and
+    /// fewer runs are timed.
     pub quick: bool,
-    /// The error for fronts and knees. By default it is the held-out error. If a recording is too
-    /// short to hold anything out, it is the third-octave error of the fit.
+    /// The error for fronts and knees. If `None`, the held-out error is used or, if a recording is
+    /// too short to hold a part of it out, the third-octave error of the fit.
     pub error: Option<ErrorAxis>,
-    /// The file of the running program or library. A journal that another build of the program
-    /// wrote is not continued.
+    /// The file of the running program or library. A sweep does not continue a journal that another
+    /// build of this program wrote.
     pub program: PathBuf,
 }
 

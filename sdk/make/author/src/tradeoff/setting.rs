@@ -1,4 +1,4 @@
-//! Settings: a value for each knob.
+//! Settings. A setting has a value for each knob of a sweep.
 
 use crate::AuthorError;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use serde_json::Value;
 /// How parameters are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Keep {
-    /// As the model's descriptor states.
+    /// In the precision that the model's descriptor states.
     Model,
     /// In single precision.
     F32,
@@ -20,16 +20,16 @@ pub enum Keep {
 /// The values of all knobs for one measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// The fit options that are not at their defaults, as names and values.
+    /// The fit options whose values differ from their defaults, as names and values.
     pub options: Vec<(String, String)>,
     pub synthesis: Synthesis,
     /// How parameters are stored.
     pub store: Keep,
-    /// Number of samples in each call.
+    /// Number of samples that each call of the model renders.
     pub block_samples: usize,
     /// Output sample rate, hertz.
     pub output_rate_hz: f64,
-    /// How the model is loaded; empty for the model's first way.
+    /// How the model is loaded (`native`, `wasm`); empty for the model's first way of loading.
     pub loader: String,
 }
 

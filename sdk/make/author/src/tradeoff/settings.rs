@@ -1,4 +1,5 @@
-//! The settings of a sweep, made from the knobs of models and the knobs of playing.
+//! The settings of a sweep, combined from the values of the models' fit options and of the options
+//! for playing.
 
 use htex_host::{FitOption, LoadedModel};
 

@@ -1,11 +1,11 @@
-//! Subjects of a sweep: the recordings.
+//! Subjects of a sweep. A subject is a recording on which contenders are measured.
 
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::finding::Notice;
 
 use crate::tradeoff::held_out::HeldOut;
 
-/// A recording, with its spectrum and its variation.
+/// A recording on which contenders are measured, with its spectrum and its variation.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// Name of the file, or of the simulated surface.
@@ -26,8 +26,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Reads the texture of a recording. With `strict`, refuses findings that are errors or
-    /// warnings.
+    /// Computes the spectrum of a recording. If `strict` is true, a recording with findings that
+    /// are errors or warnings is refused.
     ///
     /// # Errors
     /// When the recording cannot be used.

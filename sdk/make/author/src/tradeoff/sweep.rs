@@ -27,7 +27,7 @@ pub struct LeftOut {
 pub struct SweepResult {
     /// The error by which the points are judged.
     pub error: ErrorAxis,
-    /// The points by recording, in the order of the table.
+    /// The measured points. They are grouped by recording, in the order of the report's table.
     pub points: Vec<Point>,
     /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
@@ -39,8 +39,8 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 /// Measures every setting on every recording, using all cores, and then times them on one core.
 ///
 /// # Errors
-/// When the journal cannot be written, no model can be fitted to a recording, or the held-out error
-/// is requested and a recording is too short to hold a part of it out.
+/// When the journal cannot be written, or when no model can be fitted to a recording. Also when the
+/// held-out error is requested but a recording is too short to hold a part of it out.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,

@@ -1,4 +1,5 @@
-//! The catalogue: a web page to search, sort and listen to a library.
+//! The catalogue: a web page on which users search and sort the textures of a library and listen to
+//! them.
 
 use serde_json::{Value, json};
 

@@ -1,14 +1,16 @@
-//! Reads and writes Apple's Core Haptics files, `.ahap` version 1. A file has continuous events and
-//! transient events, and curves of control points that change the events.
+//! Reads and writes Apple's Core Haptics files, `.ahap` version 1. A file contains continuous
+//! events, transient events, and controls. Controls change the events; their values over time are
+//! curves between control points.
 //!
 //! The code follows Apple's documentation (*Representing haptic patterns in AHAP files*;
 //! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). The intensity control multiplies the
 //! intensity of events, and the sharpness control is added to their sharpness. A control applies to
-//! all events from its first point on, and is linear between points. The times of the points count
-//! from the start of their curve. Apple does not define what an intensity or a sharpness is. Here
-//! an intensity is the square root of an amplitude, as in Meta's conversion
-//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk). A sharpness is a position in a
-//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
+//! all events from its first point on. Between points, the value of a control is linear. The times
+//! of a curve's points are relative to the start of the curve. Apple does not define physical
+//! meanings of intensity and sharpness. This module uses two existing conventions. An intensity is
+//! the square root of an amplitude, as in Meta's conversion (core/haptic_data/src/ahap.rs of
+//! facebook/meta-haptics-sdk). A sharpness is a position in a range of frequencies, as in the
+//! reference software of ISO/IEC 23090-31.
 
 mod control;
 #[cfg(feature = "export")]
@@ -91,12 +93,12 @@ pub struct Parameter {
     pub time: f64,
 }
 
-/// Values of a control over time: straight lines between points.
+/// Values of a control over time: points with straight lines between them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     #[serde(rename = "ParameterID")]
     pub id: String,
-    /// Start of the curve, seconds. The times of its points count from here.
+    /// Start of the curve, seconds. The times of the curve's points are relative to this time.
     #[serde(rename = "Time")]
     pub time: f64,
     #[serde(rename = "ParameterCurveControlPoints")]
@@ -125,8 +127,8 @@ impl Ahap {
     /// Reads an `.ahap` file.
     ///
     /// # Errors
-    /// When the file is not JSON, has another version or structure, or a number is out of range.
-    /// The fault names the place.
+    /// When the file is not JSON, when its version or structure is unknown, or when a number is out
+    /// of range. The fault names the place in the file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let ahap: Self = json::read(bytes)?;
         if ahap.version != 1.0 {
@@ -172,8 +174,8 @@ impl Ahap {
         })
     }
 
-    /// Returns the vibrations for an actuator: one for each continuous event, and one for all
-    /// transients together.
+    /// Returns the vibrations for an actuator. Each continuous event gives one vibration, and all
+    /// transients together give one more.
     #[must_use]
     pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
         let controls = Controls::new(&self.pattern);

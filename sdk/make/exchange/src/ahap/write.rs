@@ -10,9 +10,9 @@ use crate::profile::Profile;
 
 impl Ahap {
     /// Makes a file from a vibration whose levels are amplitudes. The file has curves of at most 16
-    /// points, and events of at most 30 s. The curves also change transients. To undo this, the
-    /// intensity of a transient is divided by the value of the curve at its time; the result is at
-    /// most 1.
+    /// points, and events of at most 30 s. The curves also change transients. To compensate for
+    /// this, the intensity of each transient is divided by the curve's value at the transient's
+    /// time, and limited to 1.
     #[must_use]
     pub fn from_pattern(pattern: &Pattern, profile: &Profile) -> Self {
         let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));

@@ -86,8 +86,8 @@ pub struct Job {
     /// Settings that give what files with signals do not contain, such as the full scale.
     #[serde(default)]
     pub signal: SignalSettings,
-    /// How the recordings are read. Settings that are files are not used from here; their paths are
-    /// in the [`JobFile`]s of this job.
+    /// How the recordings are read. The setting `tracker` is not set, because each recording of the
+    /// job has its own tracker.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
     pub metadata: Metadata,

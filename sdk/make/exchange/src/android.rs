@@ -1,12 +1,14 @@
-//! Reads and writes Android's `VibrationEffect` as JSON, and writes it as Kotlin code. An effect
-//! has a waveform of levels, and the envelopes of API level 36.
+//! Reads and writes Android's `VibrationEffect` as JSON, and writes it as Kotlin code. Each file
+//! describes an effect three times: as a waveform of levels, and as the two kinds of envelope of
+//! API level 36.
 //!
-//! These rules come from Android's documentation. A waveform has timings in milliseconds, and
-//! amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states a device's shortest duration
-//! of a control point and largest number of points in an envelope. Every device supports at least
-//! 16 points of 20 ms to 1 s. An envelope of `BasicEnvelopeBuilder` ends at the intensity 0. The
-//! amplitude of `WaveformEnvelopeBuilder` is relative to the strongest vibration at the frequency.
-//! The JSON format is this project's own, because Android has no file format for effects.
+//! The rules that are checked come from Android's documentation. A waveform has timings in
+//! milliseconds, and amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states the shortest
+//! duration of a control point, and the largest number of points in an envelope, that a device
+//! supports. Every device supports at least 16 points of 20 ms to 1 s. An envelope of
+//! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
+//! relative to the strongest vibration at the frequency. The JSON format is this project's own,
+//! because Android has no file format for effects.
 
 use htex_format::Rights;
 use serde::{Deserialize, Serialize};
@@ -141,8 +143,8 @@ impl Android {
         }
     }
 
-    /// Checks that a device accepts the envelopes: the number of control points and their shortest
-    /// duration.
+    /// Checks that a device accepts the envelopes, i.e. that they do not have too many control
+    /// points, and that no point is too short.
     ///
     /// # Errors
     /// When the device would refuse an envelope or a point. The fault names this envelope or point.
@@ -166,7 +168,8 @@ impl Android {
         Ok(())
     }
 
-    /// Returns the vibration of `WaveformEnvelopeBuilder`, which starts from the amplitude 0.
+    /// Returns the vibration that the effect's `WaveformEnvelopeBuilder` describes. It starts from
+    /// the amplitude 0.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let envelope = &self.waveform_envelope;

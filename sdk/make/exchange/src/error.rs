@@ -6,7 +6,8 @@ use htex_author::AuthorError;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{problem}", place_of(.place))]
 pub struct Fault {
-    /// A JSON pointer (RFC 6901), or `line 3 column 7`; empty if the fault concerns the whole file.
+    /// The place of the fault: a JSON pointer (RFC 6901), or a text such as `line 3 column 7`.
+    /// Empty if the fault concerns the whole file.
     pub place: String,
     /// What is wrong there, and what to do.
     pub problem: String,
@@ -55,8 +56,8 @@ pub enum ExchangeError {
     /// The file is not valid in its format.
     #[error("{file}: {fault}")]
     File { file: String, fault: Fault },
-    /// An asset needs something that the format does not contain, and the user did not give it
-    /// either.
+    /// An asset needs a value that files of this format do not contain, and the user did not give
+    /// this value.
     #[error("{}", not_said(.format, .missing, &keyword))]
     Missing { format: &'static str, missing: Vec<Missing> },
     /// A given setting does not apply to this format.
@@ -110,24 +111,24 @@ pub enum ExchangeError {
     #[error("{problem}")]
     Scene { problem: String },
     /// The signal is not a valid recording, a setting of the fit cannot be used, no model could be
-    /// fitted to it, or the asset cannot be written.
+    /// fitted to the signal, or the asset cannot be written.
     #[error(transparent)]
     Author(#[from] AuthorError),
 }
 
-/// Something that the files of a format do not state, so that the user must give it.
+/// A value that files of a format do not contain, so that the user must give it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Missing {
     /// The setting as a keyword, such as `full_scale`.
     pub setting: &'static str,
-    /// Description for messages, as a phrase.
+    /// Description of the value for use in messages, as a phrase.
     pub words: &'static str,
 }
 
 impl ExchangeError {
-    /// Returns the message with a program's own names for settings. `named` converts a keyword such
-    /// as `full_scale` to the program's name.
+    /// Returns the message with the names that a program gives to settings. `named` converts a
+    /// keyword such as `full_scale` to the name in this program.
     ///
     /// ```
     /// use htex_exchange::{Format, Physical};

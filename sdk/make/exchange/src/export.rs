@@ -22,24 +22,24 @@ const MOST_RATE_HZ: f64 = 192_000.0;
 #[non_exhaustive]
 pub struct Export<'a> {
     pub format: &'static Format,
-    /// Id or short name of the model whose representation is exported. By default the
-    /// representation with the smallest nine-band error.
+    /// Id or short name of the model whose representation is exported. If `None`, the
+    /// representation with the smallest nine-band error is exported.
     pub model: Option<&'a str>,
     pub path: Path,
-    /// The actuator for which the file is made; by default the format's default actuator.
+    /// The actuator for which the file is made. If `None`, the format's default actuator is used.
     pub profile: Option<&'a Profile>,
-    /// Length of an export at a condition, seconds. It does not apply to a stroke, which has its
-    /// own length.
+    /// Length of an export at a condition, seconds. This setting is ignored for a stroke, because a
+    /// stroke has its own length.
     pub seconds: f64,
     /// Sample rate of a WAV file, hertz; by default 8000.
     pub rate_hz: Option<f64>,
     /// How an `.hjif` file codes the texture; by default [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// Which of the format's kinds of file is written, by its extension: Kotlin or JSON, `.gltf` or
-    /// `.glb`. By default the format's first extension.
+    /// Extension of the file to write, for formats with several kinds of file, such as JSON and
+    /// Kotlin, or `.gltf` and `.glb`. If `None`, the format's first extension is used.
     pub extension: Option<&'a str>,
-    /// The bytes of the asset's file. A format that stores the asset itself then contains these
-    /// bytes unchanged. Without them, the asset is written anew.
+    /// The bytes of the asset's file. If the format stores the asset itself, the exported file
+    /// contains these bytes unchanged. If `None`, the asset is encoded again.
     pub file: Option<&'a [u8]>,
     pub seed: u64,
 }
@@ -117,14 +117,13 @@ pub struct ExportedFile {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
-    /// The actuator, and how well it can play the file; `None` if no actuator plays files of this
-    /// format.
+    /// The actuator, and how well it can play the file. `None` if the format is not for actuators.
     #[serde(flatten)]
     pub played: Option<ActuatorPlay>,
     /// How much of the texture is lost; `None` if the file stores the whole texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<Loss>,
-    /// Description of what the format loses of every texture.
+    /// Text that says which parts of a texture the format always loses.
     pub loses: &'static str,
     /// Other remarks, each as a sentence.
     pub notes: Vec<String>,
@@ -154,8 +153,8 @@ pub struct ActuatorPlay {
     pub limited: f64,
 }
 
-/// Writes an asset as a file of another format. If the file stores what the asset plays, instead of
-/// the asset itself, it is read back and the loss is measured.
+/// Writes an asset as a file of another format. Some formats store not the asset itself but the
+/// vibration that it plays. A file of such a format is read back, to measure the loss.
 ///
 /// # Errors
 /// When the format cannot be written or does not accept a setting, a number is out of range, the
@@ -185,11 +184,12 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, Exch
     }
 }
 
-/// Writes what a scene plays as a file of another format. The scene determines models, motion and
-/// seed.
+/// Writes the vibration that a scene plays as a file of another format. Models, motion and seed are
+/// those of the scene.
 ///
 /// # Errors
-/// As for [`export`]. Also when the format stores assets instead of what is played.
+/// The errors of [`export`]. Also an error if the format stores assets and not the vibration that
+/// they play.
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,

@@ -1,5 +1,5 @@
-//! Describes a format: how its files are imported and exported, and which settings an import and an
-//! export accept.
+//! Describes file formats: how files of a format are imported and exported, and which settings
+//! these imports and exports accept.
 
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub const RATE_HZ: f64 = 8_000.0;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// The name of the format, as for the flag `--to`.
+    /// The name of the format, as used by the flag `--to`.
     pub name: &'static str,
     /// A short description of the format.
     pub title: &'static str,
@@ -41,15 +41,18 @@ pub struct Format {
 /// How files of a format are imported.
 #[derive(Debug, Clone, Copy)]
 pub enum Reads {
-    /// As a signal between -1 and 1, to which models are fitted. The file gives frequencies as
-    /// positions in an actuator's range. `profile` names the actuator; the user may choose another.
+    /// The file is read as a signal between -1 and 1, to which models are fitted. The file gives
+    /// frequencies as positions in an actuator's range. `profile` names the default actuator; the
+    /// user may choose another actuator.
     Positions { read: ReadPositions, profile: &'static str },
-    /// As a signal between -1 and 1, to which models are fitted. The file gives frequencies in
-    /// hertz, or in waves per metre.
+    /// The file is read as a signal between -1 and 1, to which models are fitted. The file gives
+    /// frequencies in hertz, or in waves per metre.
     Signal(ReadSignal),
-    /// As an asset, without a fit, because the file states units, speeds and forces.
+    /// The file is converted to an asset without a fit, because it contains units, speeds and
+    /// forces.
     Asset(ReadAsset),
-    /// As an asset, without a fit, because the file is an image of grey values over a surface.
+    /// The file is an image of grey values over a surface. It is converted to an asset without a
+    /// fit.
     Map,
 }
 
@@ -63,7 +66,8 @@ type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 #[cfg(feature = "export")]
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
-    /// The file stores what the asset plays at a motion, as far as an actuator can play it.
+    /// The file stores the vibration that the asset plays at a motion, reduced to what an actuator
+    /// can play.
     Signal {
         write: WriteSignal,
         /// The profile that is used unless the user chooses another.
@@ -77,7 +81,7 @@ pub enum Writes {
     Map,
 }
 
-/// The function that writes what is played to a format.
+/// The function that writes a played vibration as a file of a format.
 #[cfg(feature = "export")]
 pub type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
 #[cfg(feature = "export")]
@@ -88,7 +92,8 @@ type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, Exchan
 pub struct Sampling {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Speed of the finger, mm/s, for files whose positions lie in space.
+    /// Speed of the finger, mm/s. It is used only for files whose positions are distances and not
+    /// times.
     pub speed_mm_s: f64,
 }
 
@@ -100,10 +105,10 @@ pub struct Signal {
     pub left_out: Vec<String>,
 }
 
-/// What an asset needs in addition to the contents of the imported file.
+/// Names that an imported asset needs in addition to the contents of the file.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Naming<'a> {
-    /// Name of the texture, if the file does not name it.
+    /// Name of the texture, used if the file contains no name.
     pub name: &'a str,
     /// Program and version, stored in the provenance.
     pub tool: &'a str,

@@ -1,4 +1,4 @@
-//! The table of all formats. The commands, their help, messages and documents use this table.
+//! The table of all formats. Commands, help texts, messages and documents use this table.
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads};
@@ -130,14 +130,13 @@ impl Format {
     }
 }
 
-/// Returns a list of the extensions that can be imported, as a text such as `.haptic, .ahap and
-/// .hjif`.
+/// Returns the extensions that can be imported, as a text such as `.haptic, .ahap and .hjif`.
 #[must_use]
 pub fn imported() -> String {
     extensions_of(|reads| reads.is_some())
 }
 
-/// Returns a list of the extensions that are imported as signals, as a text.
+/// Returns the extensions of the formats that are imported as signals, as a text.
 #[must_use]
 pub fn imported_signals() -> String {
     extensions_of(|reads| matches!(reads, Some(Reads::Positions { .. } | Reads::Signal(_))))

@@ -4,10 +4,10 @@
 //!
 //! The code follows the published specification (*.haptic File Specification 1.0*,
 //! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As the specification requires, a
-//! frequency point after the end of the amplitude envelope is an error. The only exception is a
-//! last point whose line crosses this end, because earlier editors wrote such points. Frequencies
-//! are positions in an actuator's range, so a profile is needed to convert them to hertz. Without
-//! frequency points, the frequency is 0.5.
+//! frequency point after the end of the amplitude envelope is an error. The only exception is the
+//! last frequency point if the line that leads to it crosses this end, because earlier editors
+//! wrote such points. Frequencies are positions in an actuator's range, so a profile is needed to
+//! convert them to hertz. Without frequency points, the frequency is 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -67,7 +67,8 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    /// The frequency envelope. A missing, null or empty envelope means the same.
+    /// The frequency envelope. It may be missing, null or empty; all three mean that there are no
+    /// frequency points.
     #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
 }
@@ -88,7 +89,7 @@ pub struct Amplitude {
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Emphasis {
-    /// Amplitude, at least the envelope's amplitude and at most 1.
+    /// Amplitude of the emphasis: at least the envelope's amplitude, and at most 1.
     pub amplitude: f64,
     /// Frequency from 0 to 1.
     pub frequency: f64,
@@ -214,8 +215,9 @@ impl Haptic {
     }
 
     /// Makes a file from a vibration whose levels are amplitudes. A transient becomes the emphasis
-    /// of an amplitude point. If there is no point at its time, one is added. A transient before
-    /// the start or after the end is moved to the start or the end.
+    /// of an amplitude point. If there is no amplitude point at the transient's time, a point is
+    /// added. A transient before the start is moved to the start, and a transient after the end to
+    /// the end.
     #[must_use]
     pub fn from_pattern(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();

@@ -1,5 +1,5 @@
-//! Plays what is exported: an asset at a condition or along a stroke, or a scene. The result is
-//! samples, and an envelope with a value for each block.
+//! Plays what is exported: an asset at a condition or along a stroke, or a scene. The result
+//! consists of the samples, and of an envelope with one value for each block of samples.
 
 use htex_author::threshold_magnitude;
 use htex_dsp::envelope::Analyser;
@@ -27,12 +27,12 @@ pub enum Path {
 
 /// The sound of a scene, in the unit of its textures.
 pub struct SceneSound<'a> {
-    /// The scene's name, which the exported file gets.
+    /// The scene's name, which is stored in the exported file.
     pub name: &'a str,
-    /// Licence and author for all textures of the scene together.
+    /// Licence and author that apply to the exported file. They cover all textures of the scene.
     pub rights: &'a Rights,
     pub quantity: Quantity,
-    /// The frequency band of its textures.
+    /// The frequency band of the scene's textures.
     pub band: Band,
     /// Length of the scene, seconds.
     pub seconds: f64,

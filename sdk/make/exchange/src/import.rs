@@ -1,11 +1,11 @@
 //! Imports files of other formats as assets.
 //!
-//! A file that states units, speeds and forces becomes an asset directly (HaTT). A glTF file
-//! contains an asset. An image becomes an asset at the full scale and the condition that the user
-//! gives. All other files contain a signal between -1 and 1, and state no newtons, no speed and no
-//! force. Such a signal becomes a recording with the full scale and the condition that the user
-//! gives, and models are fitted to it. A texture plays for any length of time, so a signal that is
-//! shorter than a few seconds is repeated first.
+//! How a file is imported depends on its format. A HaTT file contains units, speeds and forces, so
+//! it is converted to an asset without a fit. A glTF file contains an asset. An image is converted
+//! to an asset with the full scale and the condition that the user gives. All other files contain a
+//! signal between -1 and 1 without units, speed and force. Such a signal becomes a recording with
+//! the full scale and the condition that the user gives, and models are fitted to this recording. A
+//! signal that is shorter than a few seconds is repeated before the fit.
 
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
@@ -33,11 +33,11 @@ const UNLICENSED: &str = "It states no licence, and without one nobody may pass 
 /// Settings of an import.
 #[derive(Debug, Clone, Default)]
 pub struct Import<'a> {
-    /// The asset's name, if the file does not name it.
+    /// The asset's name, used if the file contains no name.
     pub name: &'a str,
     pub physical: Physical,
-    /// The actuator, if the file gives frequencies as positions in an actuator's range. By default
-    /// the format's default actuator.
+    /// The actuator, for files that give frequencies as positions in an actuator's range. If
+    /// `None`, the format's default actuator is used.
     pub profile: Option<&'a Profile>,
     pub fit: FitSettings,
     pub metadata: Metadata,
@@ -56,23 +56,24 @@ pub struct ImportedAsset {
     /// The bytes of the asset's file, if the imported file contains the asset and the given
     /// metadata changes nothing.
     file: Option<Vec<u8>>,
-    /// For each representation at each condition: how much of the difference from the signal a
-    /// finger can feel. Empty if no model was fitted.
+    /// How much of the difference from the signal a finger can feel: one list for each
+    /// representation, with one value for each condition. Empty if the import needs no fit.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// Ids of models that could not be fitted, each with the reason. Empty if no model was fitted.
+    /// Ids of models that could not be fitted, each with the reason. Empty if the import needs no
+    /// fit.
     pub skipped: Vec<(String, String)>,
-    /// What the user should know.
+    /// Warnings: problems that the user should know about.
     pub warnings: Vec<Notice>,
-    /// What the user may want to know, e.g. that a licence is missing.
+    /// Notes that are less important than warnings, e.g. that a licence is missing.
     pub notes: Vec<Notice>,
 }
 
-/// Imports a file as an asset. `file` is its name, whose extension determines the format.
+/// Imports a file as an asset. `file` is the file's name; its extension determines the format.
 ///
 /// # Errors
-/// When no format has the extension, the format does not accept a given setting, a setting is
-/// missing that the file does not state either, the file is invalid (the error names the place), or
-/// no model can be fitted.
+/// When no format has the extension, when the format does not accept a given setting, when a value
+/// is in neither the file nor the settings, when the file is invalid (the error names the place),
+/// or when no model can be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -179,8 +180,8 @@ impl ImportedAsset {
         }
     }
 
-    /// Returns the bytes of the asset's file. If the imported file contains the asset, its bytes
-    /// are returned unchanged. Otherwise the file is written anew.
+    /// Returns the bytes of the asset's file. If the imported file contains the asset, the asset's
+    /// bytes are returned unchanged. Otherwise the asset is encoded.
     ///
     /// # Errors
     /// When the asset breaks a rule of its format.
@@ -211,7 +212,7 @@ fn mapped(
 /// Reads a file as a recording. [`import`] does this before it fits models.
 ///
 /// # Errors
-/// As for [`import`]. Also when the file is an asset instead of a signal.
+/// The errors of [`import`]. Also an error if the file does not contain a signal.
 pub fn recording_of(
     file: &str,
     bytes: &[u8],
@@ -244,11 +245,11 @@ pub fn recording_of(
 
 /// Fits models to signals that [`recording_of`] returned, and makes an asset. Spectra are computed
 /// from evenly spaced time windows. The full scale is stored in the provenance. The conditions have
-/// no repeatability: a rendered and repeated file does not show how much another touch would
+/// no repeatability, because a rendered and repeated file does not show how much two touches would
 /// differ.
 ///
 /// # Errors
-/// As [`fit_asset`].
+/// The errors of [`fit_asset`].
 pub fn fit_signals(
     takes: &[Take],
     mut request: AssetRequest,

@@ -16,7 +16,7 @@ pub enum Coding {
     Wavelet,
 }
 
-/// The input of a writer: what is played, and the actuator for which it is written.
+/// The input of a writer: the played vibration, and the actuator for which the file is written.
 pub struct Job<'a> {
     pub(crate) export: &'a Export<'a>,
     pub(crate) playing: Playing<'a>,

@@ -1,5 +1,5 @@
-//! Reads JSON. An error states its place: a JSON pointer, or line and column if the text is not
-//! JSON.
+//! Reads JSON. An error names the place of the fault: a JSON pointer or, if the text is not JSON,
+//! line and column.
 
 use htex_base::finding::escape;
 use htex_format::{JsonError, parse_json};

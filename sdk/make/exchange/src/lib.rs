@@ -2,11 +2,12 @@
 //! can play.
 //!
 //! [`FORMATS`] is the table of formats. Commands, help and documents use it. **Import.** If a file
-//! states units, speeds and forces, or contains an asset, [`import`] reads it as an asset.
-//! Otherwise it reads a signal and fits models to it, and the user gives what the file does not
-//! state. **Export.** [`export`] plays an asset at a condition or along a stroke, reduces the
-//! result to what an actuator can play (its [`Profile`]), and writes it. It then reads the file
-//! back, plays it through the profile, and compares the result with the asset's own samples.
+//! contains units, speeds and forces, or if it contains an asset, [`import`] converts the file to
+//! an asset. From all other files, [`import`] reads a signal and fits models to it. The user gives
+//! the values that a file does not contain. **Export.** [`export`] plays an asset at a condition or
+//! along a stroke, reduces the vibration to what an actuator can play (its [`Profile`]), and writes
+//! the file. It then reads the file back, plays it through the profile, and compares this vibration
+//! with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
@@ -18,7 +19,7 @@
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
 //!
-//! Without the feature `export`, which is on by default, formats can only be imported, and
+//! The feature `export` is on by default. Without this feature, formats can only be imported, and
 //! [`Format`] has no field `writes`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

@@ -18,8 +18,9 @@ use crate::profile::{Kind, Profile};
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Loss {
-    /// Difference between what the actuator plays from the file and the asset's own samples. The
-    /// actuator's acceleration is converted to the asset's unit so that both would feel the same.
+    /// Difference between what the actuator plays from the file and the asset's own samples. For
+    /// the comparison, the actuator's acceleration is converted to the asset's unit in such a way
+    /// that equal values would feel the same.
     #[serde(flatten)]
     pub difference: Difference,
     /// Level of what the actuator plays, relative to the asset's level, decibels.

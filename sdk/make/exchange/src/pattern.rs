@@ -1,4 +1,5 @@
-//! The common form of all envelope formats: a level and a frequency over time, and transients.
+//! The common representation of all envelope formats: a level and a frequency over time, and
+//! transients.
 
 use crate::curve::{Point, Reader};
 use crate::error::Fault;
@@ -36,11 +37,12 @@ pub struct Pattern {
     /// Start and end, seconds.
     pub from_s: f64,
     pub to_s: f64,
-    /// Level over time, 0 to 1. The level to the power of `exponent` is the amplitude relative to
-    /// the strongest vibration at the frequency.
+    /// Level over time, 0 to 1. The level raised to the power of `exponent` is the amplitude,
+    /// relative to the strongest vibration at the current frequency.
     pub level: Vec<Point>,
-    /// 1 if levels are amplitudes relative to the strongest vibration. 2 if levels are the square
-    /// roots of these amplitudes, as in `.ahap`.
+    /// Exponent that converts levels to amplitudes. It is 1 if levels are amplitudes relative to
+    /// the strongest vibration, and 2 if levels are the square roots of these amplitudes, as in
+    /// `.ahap`.
     pub exponent: i32,
     /// Frequency over time, hertz.
     pub frequency_hz: Vec<Point>,
@@ -65,7 +67,7 @@ impl Pattern {
         ends.fold(self.to_s, f64::max)
     }
 
-    /// Adds the vibration to samples. The first sample is at time 0. The value 1 is the strongest
+    /// Adds the vibration to samples. The first sample is at time 0. A sample of 1 is the strongest
     /// vibration of the actuator.
     pub fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
         self.add_sine(samples, rate_hz);
@@ -143,8 +145,8 @@ pub(crate) fn rendered_of_file(
     Ok(rendered(patterns, rate_hz))
 }
 
-/// Renders the sum of patterns, from time 0 to the end of the last one. The sum is limited to the
-/// range from -1 to 1, as in an actuator.
+/// Renders the sum of patterns, from time 0 to the end of the last pattern. The sum is limited to
+/// the range from -1 to 1, as in an actuator.
 #[must_use]
 pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
@@ -158,9 +160,9 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     samples
 }
 
-/// Combines patterns into one, for formats with a single envelope. At each time, the strongest
-/// pattern is used. All transients are kept. Levels are converted to the exponent 1 at the points,
-/// and stay straight lines between points.
+/// Combines patterns into one, for formats with a single envelope. At each time, the level and
+/// frequency of the strongest pattern are used. All transients are kept. Levels are converted to
+/// the exponent 1 at the points. Between points, the converted levels are straight lines.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();

@@ -1,4 +1,5 @@
-//! Values that files do not state: the physical value of 1, and the motion of the finger.
+//! Values that imported files do not contain: the full scale (the physical value of 1), and the
+//! motion of the finger.
 
 use htex_author::Exploration;
 use htex_format::Quantity;
@@ -7,18 +8,18 @@ use crate::error::{ExchangeError, Missing, in_file};
 use crate::format::{Format, Naming, Reads};
 use crate::map;
 
-/// Values that a file with a signal or an image does not state.
+/// Values that the user gives because a file with a signal or an image does not contain them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Physical {
-    /// The value for which 1 stands in the file, in the unit of the quantity, such as newtons for a
-    /// lateral force. In an image, the value of white.
+    /// The physical value of the number 1 in the file, or of white in an image. It is in the unit
+    /// of the quantity, such as newtons for a lateral force.
     pub full_scale: Option<f64>,
     pub quantity: Quantity,
     /// Speed of the finger, mm/s.
     pub speed_mm_s: Option<f64>,
     /// Normal force of the finger, newtons.
     pub force_n: Option<f64>,
-    /// Distance between the pixels of an image, mm. It replaces the distance that the file states.
+    /// Distance between the pixels of an image, mm. It replaces the distance in the file.
     pub pitch_mm: Option<f64>,
 }
 
@@ -30,9 +31,9 @@ pub(crate) const PITCH: Missing =
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
-/// Reads a file, and returns which values it does not state, so that the user must give them for an
-/// import. The result is empty for a file that contains or fully describes an asset. `file` is its
-/// name.
+/// Reads a file, and returns the values that the user must give for an import because the file does
+/// not contain them. The result is empty for a file that contains or fully describes an asset.
+/// `file` is the file's name.
 ///
 /// # Errors
 /// When no format has the file's extension, or the file is invalid. The error names the place.
@@ -67,8 +68,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns which values files of this format do not state, or may leave out. For an image, this
-    /// includes the distance between pixels, which only some files state.
+    /// Returns the values that files of this format do not contain, or do not always contain. For
+    /// images, this includes the distance between pixels, because only some images contain it.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {

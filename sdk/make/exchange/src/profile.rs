@@ -1,11 +1,11 @@
-//! Profiles of actuators. A profile states what an actuator can play, with a source for every
-//! value.
+//! Profiles of actuators. A profile describes what an actuator can play. Every value in a profile
+//! has a source.
 //!
 //! The profiles are data in the crate (`profiles.toml`). A resonant actuator is modelled as a
-//! driven oscillator. At a frequency `f`, its strongest vibration is `strongest_m_s2` times its
-//! response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`. Outside its range it plays nothing. A motor with a
-//! rotating mass is controlled by its level alone: its frequency follows the level, and its
-//! acceleration grows with the square of the frequency.
+//! driven oscillator. At a frequency `f`, the oscillator's strongest vibration is `strongest_m_s2`
+//! times its response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`. Outside its frequency range, it plays
+//! nothing. A motor with a rotating mass is controlled only by its level: the frequency follows the
+//! level, and the acceleration grows with the square of the frequency.
 
 use std::sync::LazyLock;
 
@@ -35,7 +35,8 @@ pub struct SourcedValue {
 }
 
 impl SourcedValue {
-    /// Returns whether the value is assumed, because nobody has measured or published it.
+    /// Returns whether the value is assumed. A value is assumed if there is no published
+    /// measurement.
     #[must_use]
     pub fn is_assumed(&self) -> bool {
         self.source == "assumed"
@@ -105,8 +106,8 @@ impl Profile {
         ]
     }
 
-    /// Returns the fraction of its strongest acceleration that the actuator reaches at a frequency,
-    /// 0 to 1. Outside its range the fraction is 0.
+    /// Returns the fraction of the actuator's strongest acceleration that it reaches at a
+    /// frequency, 0 to 1. Outside the actuator's range, the fraction is 0.
     #[must_use]
     pub fn response(&self, hertz: f64) -> f64 {
         if !(self.low_hz.value..=self.high_hz.value).contains(&hertz) {
@@ -128,8 +129,8 @@ impl Profile {
         self.strongest_m_s2.value * self.response(hertz)
     }
 
-    /// Returns the frequency, hertz, at a position in the actuator's range. Positions go from 0 to
-    /// 1.
+    /// Returns the frequency, hertz, at a position in the actuator's range. `part` is this
+    /// position, from 0 to 1.
     #[must_use]
     pub fn hertz_of(&self, part: f64) -> f64 {
         self.low_hz.value + part * (self.high_hz.value - self.low_hz.value)
@@ -149,8 +150,8 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|profile| &profile.name[..]).collect()
 }
 
-/// Returns a Markdown table of the profiles, for documents. Next to a published value stands the
-/// number of its source, which refers to the list below the table.
+/// Returns a Markdown table of the profiles, for documents. Each published value has the number of
+/// its source. The sources are listed below the table.
 #[must_use]
 pub fn profiles_table() -> String {
     let mut sources: Vec<&str> = Vec::new();

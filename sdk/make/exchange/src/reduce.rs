@@ -1,13 +1,14 @@
-//! Reduces what an asset plays to what an actuator can play.
+//! Reduces the vibration that an asset plays to a vibration that an actuator can play: one tone, or
+//! samples.
 //!
 //! **One tone.** In each block, the power of each band is divided by the squared detection
 //! threshold in this band. The sum over all bands is the strength with which the block is felt. The
-//! tone gets the same strength relative to its own threshold. Its frequency is the mean of the
-//! bands' frequencies, weighted by their felt strength, within the actuator's range. If the
-//! actuator is too weak at this frequency, the frequency moves towards the resonance, no further
-//! than necessary. If the actuator is too weak at every frequency, it plays the strongest possible
-//! tone, and the time counts as limited. **Samples** are filtered by the inverse of the actuator's
-//! response, which raises no frequency by more than 12 dB.
+//! tone has the same strength, relative to the threshold at the tone's frequency. This frequency is
+//! the mean of the bands' frequencies, weighted by the felt strength of each band, within the
+//! actuator's range. If the actuator is too weak at this frequency, the frequency is moved towards
+//! the resonance, but no further than necessary. If the actuator is too weak at every frequency, it
+//! plays the strongest possible tone, and the block counts as limited. **Samples** are filtered by
+//! the inverse of the actuator's response, which raises no frequency by more than 12 dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;

@@ -9,7 +9,7 @@ use crate::format::Format;
 use crate::gltf;
 use crate::map;
 
-/// The place in a format's files that states the rights, and the function that reads it.
+/// The place in a format's files where the rights are stored, and the function that reads them.
 #[derive(Debug, Clone, Copy)]
 pub struct RightsPlace {
     /// Description of the place.

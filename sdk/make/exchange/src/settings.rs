@@ -1,4 +1,5 @@
-//! Settings for the signals of a file. They are flags of the command and keys of recipes.
+//! Settings for importing files with signals and images. Each setting is a flag of the command and
+//! a key of recipes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use crate::profile_names;
 
 /// Settings for importing signals (`.haptic`, `.ahap`, `.hjif`) and images. Quantity, speed and
-/// force are set as for recordings.
+/// force are not among these settings; they are set in the same way as for recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct SignalSettings {
-    /// The value, in the quantity's unit, for which 1 stands in files of haptic signals. In an
-    /// image, the value of white.
+    /// The physical value of the number 1 in a haptic signal, or of white in an image, in the
+    /// quantity's unit.
     #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     #[cfg_attr(
         feature = "clap",
@@ -45,7 +46,7 @@ pub struct SignalSettings {
     pub pitch_mm: Option<f64>,
 
     /// Name of the actuator, for files that give frequencies as positions in an actuator's range.
-    /// By default the format's own.
+    /// If missing, the format's default actuator is used.
     #[cfg_attr(feature = "clap", arg(
         long,
         value_name = "NAME",
@@ -59,7 +60,7 @@ pub struct SignalSettings {
 }
 
 impl SignalSettings {
-    /// Returns these settings, with missing ones taken from `under`.
+    /// Returns these settings. Settings that are missing here are taken from `under`.
     ///
     /// ```
     /// use htex_exchange::SignalSettings;

@@ -23,16 +23,17 @@ impl Stroke {
     /// with time, position and force.
     ///
     /// # Errors
-    /// As for [`htex_author::recording::read_trace`], except that the file may have a speed instead
-    /// of positions.
+    /// The errors of [`htex_author::recording::read_trace`], except that positions may be missing
+    /// if the file has a speed.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_stroke(path)?))
     }
 
-    /// Does the same as [`Self::open`], for a file in memory. Messages call it `file`.
+    /// Does the same as [`Self::open`], for a file in memory. `file` is the file's name in
+    /// messages.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
         Ok(Self::new(stroke_from_bytes(file, bytes)?))
     }

@@ -1,5 +1,5 @@
-//! The writers of the formats. Each one reduces what the asset plays to what the actuator can play,
-//! writes the file and reads it back.
+//! The writers of the formats. Each writer reduces the asset's vibration to what the actuator can
+//! play, writes the file and reads the file back.
 
 use crate::android::{
     Android, BasicEnvelope, BasicPoint, LONGEST_POINT_MS, Waveform, WaveformEnvelope, WaveformPoint,

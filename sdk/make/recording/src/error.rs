@@ -1,7 +1,7 @@
 //! Errors of reading recordings, setup responses and motion traces.
 //!
-//! A reader reports what is wrong and where ([`Fault`]). The name of the file is added where the
-//! file is opened.
+//! A reader reports what is wrong and where ([`Fault`]). The function that opens the file adds the
+//! file's name.
 
 use std::borrow::Cow;
 use std::{fmt, io};
@@ -18,7 +18,7 @@ use crate::recording::RecordingError;
 pub struct ReadError {
     /// File name without its directory, or `column map`.
     pub file: String,
-    /// Where in the file, if the problem is at one place.
+    /// Place of the problem in the file; `None` if the problem is not at a single place.
     pub place: Option<Place>,
     /// What is wrong, and what the user can do about it.
     pub problem: ReadProblem,
@@ -41,7 +41,7 @@ pub enum ReadProblem {
     Empty,
     #[error("{rows} row(s) of numbers; a recording needs at least 2")]
     TooFewRows { rows: usize },
-    /// NUL bytes or invalid UTF-8.
+    /// A text file contains NUL bytes or invalid UTF-8.
     #[error(
         "{what}, which is not text; give a CSV saved as UTF-8, or a binary file of a known kind"
     )]
@@ -78,7 +78,7 @@ pub enum ReadProblem {
     /// The file is damaged or of an unsupported kind, or its numbers are invalid.
     #[error("{0}")]
     Invalid(String),
-    /// This build lacks the reader of the file's format.
+    /// This build does not include the reader for the file's format.
     #[error(
         "this build does not read {formats}; build with the feature {feature}, use the Python package, \
          or convert the file to CSV"
@@ -159,7 +159,7 @@ impl ReadError {
 }
 
 impl ReadProblem {
-    /// Adds the name of the file or source to a problem that concerns all of it.
+    /// Adds the name of the file or source to a problem that concerns the whole file or source.
     #[must_use]
     pub fn in_file(self, file: &str) -> ReadError {
         Fault::from(self).in_file(file)

@@ -1,22 +1,23 @@
-//! The hash of a recording's file. An asset's provenance stores it, to distinguish recordings of
-//! the same name.
+//! The hash of a recording's file. An asset's provenance stores this hash, to distinguish
+//! recordings with the same name.
 
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The file that a recording was read from: what is needed to compute its hash.
+/// The file from which a recording was read, with the data that is needed to compute the file's
+/// hash.
 ///
-/// A file is hashed only when provenance asks for it. If every file were hashed, it would be read a
-/// second time, and reading a recording would take a tenth longer.
+/// The hash is computed only when an asset's provenance needs it, because the file must be read a
+/// second time for the hash. This would make reading each recording slower by a tenth.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(FileIdentity);
 
 #[derive(Debug, Clone, PartialEq, Default)]
 enum FileIdentity {
-    /// The recording does not come from a file, or comes from one that can be read only once, such
-    /// as a pipe.
+    /// The recording does not come from a file, or it comes from a file that can be read only once,
+    /// such as a pipe.
     #[default]
     Nothing,
     Hash(String),

@@ -9,22 +9,22 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a glTF 2.0 material. It states what a finger feels when it
-/// slides over surfaces of this material. Properties that are not described here are allowed,
-/// including `extensions` and `extras`.
+/// The extension `HTEX_texture` of a glTF 2.0 material. It refers to the texture that a finger
+/// feels when it slides over surfaces of this material. Properties that are not described here are
+/// allowed, including `extensions` and `extras`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {
     /// Index of the buffer view that contains a `.htex` file.
     pub buffer_view: u32,
-    /// Media type of these bytes.
+    /// Media type of the bytes in the buffer view.
     pub mime_type: MediaType,
-    /// The number n of the set of texture coordinates, `TEXCOORD_n`. They state where on the
-    /// surface a point lies.
+    /// The number n of the set of texture coordinates `TEXCOORD_n`. These coordinates state where
+    /// on the surface a point lies.
     #[serde(default)]
     pub tex_coord: u32,
     /// Length on the surface, in millimetres, of one unit of the first and of the second texture
-    /// coordinate. Without it, distances on the surface follow from the geometry.
+    /// coordinate. If this property is missing, distances on the surface follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,

@@ -1,8 +1,8 @@
 //! Reads and writes glTF 2.0 files with the extension `HTEX_texture` (`spec/materials-1.md`). A
-//! material refers to an asset, whose file is stored in a buffer view.
+//! material refers to a buffer view that contains the file of an asset.
 //!
 //! The reader reads only the objects that lead from a material to the bytes of the asset. It
-//! ignores everything else in the file, even if it is invalid.
+//! ignores all other contents of the file, even invalid contents.
 
 mod glb;
 mod material;

@@ -24,8 +24,8 @@ pub(crate) fn import(bytes: &[u8], naming: &Naming<'_>) -> Result<ImportedAsset,
     Ok(ImportedAsset::new(asset(&texture, naming)?, None, texture.notes))
 }
 
-/// Converts a texture of the toolkit to an asset. The asset has no licence, because the file states
-/// none.
+/// Converts a texture of the toolkit to an asset. The asset has no licence, because the toolkit's
+/// files contain none.
 ///
 /// # Errors
 /// When a filter cannot be stored because its poles or zeros are too close to each other.

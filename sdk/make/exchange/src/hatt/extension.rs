@@ -1,5 +1,5 @@
-//! Stores the contents of a model file that the texture itself does not use, as an extension of the
-//! asset.
+//! The extension of an asset that stores those contents of a model file that are not used to play
+//! the texture.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -22,10 +22,10 @@ const TOO_MUCH: &str = "the filters up to here take too much work, by their numb
 pub struct Node {
     pub speed_mm_s: f64,
     pub force_n: f64,
-    /// Coefficients of the denominator after the first, which is 1.
+    /// Coefficients of the denominator. The first coefficient is always 1 and is not in this list.
     pub ar: Vec<f64>,
-    /// Coefficients of the numerator after the first, which is 1. All zeros are inside the unit
-    /// circle.
+    /// Coefficients of the numerator. The first coefficient is always 1 and is not in this list.
+    /// All zeros of the numerator are inside the unit circle.
     pub ma: Vec<f64>,
     /// Variance of the noise, (m/s²)²; 0 at a silent node.
     pub variance: f64,

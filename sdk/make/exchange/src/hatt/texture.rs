@@ -25,10 +25,10 @@ pub struct Texture {
     pub max_speed_mm_s: Option<f64>,
     pub max_force_n: Option<f64>,
     pub nodes: Vec<Node>,
-    /// Triangles between nodes, as indices of nodes that start at 0. If empty, a player finds
-    /// triangles itself.
+    /// Triangles between nodes, given as indices of nodes, starting at 0. If there are none, a
+    /// player computes the triangles itself.
     pub triangles: Vec<Triangle>,
-    /// What the user should know about the file.
+    /// Notes about the file for the user, as sentences.
     pub notes: Vec<String>,
 }
 

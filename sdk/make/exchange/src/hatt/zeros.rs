@@ -1,5 +1,5 @@
-//! Mirrors zeros that lie outside the unit circle to its inside. Noise that passes through the
-//! mirrored filter has the same spectrum up to a gain.
+//! Mirrors zeros that lie outside the unit circle to the inside. Noise that passes through the
+//! mirrored filter has the same spectrum as before, except for a constant gain.
 
 use std::f64::consts::TAU;
 

@@ -5,8 +5,9 @@
 //! The code follows the reference software (MPEGGroup/HapticReferenceSoftware):
 //! source/IOHaptics/src/IOJson.cpp for keys and rules, source/Types/src/Effect.cpp for the sound of
 //! keyframes, and source/WaveletDecoder for wavelets. The names of perceptions come from
-//! draft-ietf-avtcore-rtp-haptics. Keys of earlier drafts (`tracks`, `mixing_weight`) are also
-//! read. The reader uses only the first channel of the first perception that is a vibration.
+//! draft-ietf-avtcore-rtp-haptics. The reader also accepts keys of earlier drafts (`tracks`,
+//! `mixing_weight`). Of a file, it uses only the first perception that is a vibration, and only the
+//! first channel of that perception.
 
 mod check;
 mod number;
@@ -115,8 +116,8 @@ pub struct Band {
     pub block_length: Option<f64>,
     #[serde(serialize_with = "whole")]
     pub lower_frequency_limit: f64,
-    /// Upper edge of the band. In a wavelet band, it is the number of samples per second or per
-    /// metre.
+    /// Upper edge of the band. In a wavelet band, this number is the sample rate: samples per
+    /// second or per metre.
     #[serde(serialize_with = "whole")]
     pub upper_frequency_limit: f64,
     pub effects: Vec<Effect>,
@@ -236,8 +237,8 @@ impl Hjif {
         bytes
     }
 
-    /// Returns whether positions lie in space instead of time. In space, the user must give the
-    /// finger's speed.
+    /// Returns whether positions in the file are distances and not times. For distances, the user
+    /// must give the finger's speed.
     #[must_use]
     pub fn is_over_space(&self) -> bool {
         self.chosen()

@@ -28,11 +28,13 @@ struct BandInSeconds<'a> {
 }
 
 impl Hjif {
-    /// Renders the channel that is read, at a sample rate in hertz. Samples lie between -1 and 1. A
-    /// texture over space is rendered as felt at a speed in mm/s.
+    /// Renders the channel that the reader uses, at a sample rate in hertz. Samples lie between -1
+    /// and 1. If positions in the file are distances, the texture is rendered for the finger's
+    /// speed, mm/s.
     ///
     /// # Errors
-    /// When the channel is longer than ten minutes, or its effects together take too much work.
+    /// When the channel is longer than ten minutes, or when rendering all of its effects would take
+    /// too much computation.
     pub fn rendered(&self, rate_hz: f64, speed_mm_s: f64) -> Result<Vec<f64>, Fault> {
         let Some(chosen) = self.chosen() else {
             return Err(Fault::new("/perceptions", "no perception vibrates"));

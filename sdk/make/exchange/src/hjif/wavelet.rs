@@ -2,9 +2,10 @@
 //! (1992, *Comm. Pure Appl. Math.* 45). Blocks are extended by reflection at their ends. The
 //! transform is repeated until the lowest band has four coefficients.
 //!
-//! The transform is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4):
-//! four steps and a scale. So the inverse is exact up to rounding. The scale is that of the
-//! reference software (source/FilterBank/include/Wavelet.h), whose low-pass filter sums to √2.
+//! The transform is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4),
+//! i.e. by four lifting steps and a scaling. Its inverse is therefore exact up to rounding. The
+//! scaling is the same as in the reference software (source/FilterBank/include/Wavelet.h): the
+//! coefficients of the low-pass filter sum to √2.
 
 /// The four lifting steps of the 9/7 transform.
 const STEPS: [f64; 4] =
@@ -14,8 +15,8 @@ const SCALE: f64 = 1.149_604_398_860_241;
 /// Number of coefficients in the lowest band.
 const LOWEST: usize = 4;
 
-/// Transforms a block of samples to coefficients, the lowest band first. The number of samples must
-/// be a power of two.
+/// Transforms a block of samples to coefficients. The coefficients of the lowest band come first.
+/// The number of samples must be a power of two.
 #[must_use]
 pub fn analysed(block: &[f64]) -> Vec<f64> {
     let mut all = block.to_vec();

@@ -21,8 +21,8 @@ const RESOLUTION: f64 = 1e-4;
 /// give equal bytes.
 const NO_DATE: &str = "1970-01-01";
 
-/// Whether the positions in a file are times or places. Places are distances over which a finger
-/// slides at a speed.
+/// Whether the positions in a file are times or distances. A finger slides over the distances at a
+/// speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
     /// Speed of the finger over a texture in space, mm/s. `None` stands for a vibration over time.
@@ -106,8 +106,8 @@ pub(crate) fn vectorial(
     file(bands.collect(), profile, space, description)
 }
 
-/// Makes a file from samples, which are coded by wavelets. Samples lie between -1 and 1, at the
-/// sample rate [`Space::rate_hz`].
+/// Makes a file in which samples are coded by wavelets. The samples must lie between -1 and 1 and
+/// have the sample rate [`Space::rate_hz`].
 pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &str) -> Hjif {
     let blocks = samples.chunks(BLOCK).enumerate().map(|(index, samples)| {
         let mut block = samples.to_vec();

@@ -26,7 +26,8 @@ pub(crate) const PITCH_MM: std::ops::RangeInclusive<f64> =
 pub struct Image {
     /// Number of pixels in a row, 1 to 255.
     pub width: usize,
-    /// Grey values, row by row from the top. There are 1 to 255 rows. 0 is black, 255 is white.
+    /// Grey values of the pixels, row by row from the top; 0 is black, 255 is white. There are 1 to
+    /// 255 rows.
     pub grey: Vec<u8>,
     /// Distance between neighbouring pixels in mm, if the file states it.
     pub pitch_mm: Option<f64>,
@@ -35,8 +36,9 @@ pub struct Image {
 /// Reads a PNG file with grey values. A colour image is accepted if all of its colours are grey.
 ///
 /// # Errors
-/// When the file is not a PNG, or has more than 8 bits per channel, more than 255 pixels in a row
-/// or a column, colours, transparent pixels or several frames. The fault names the place.
+/// When the file is not a PNG, or when it has colours, transparent pixels, several frames, more
+/// than 8 bits per channel, or more than 255 pixels in a row or a column. The fault names the
+/// place.
 pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     if bytes.len() > MOST_BYTES {
         let size = bytes.len();

@@ -1,12 +1,13 @@
-//! Reads and writes friction maps: 8-bit PNG images, as electroadhesion displays use them
-//! (TanvasTouch). Each pixel is the friction at its place, from black for the least to white for
-//! the most.
+//! Reads and writes friction maps: 8-bit PNG images, which electroadhesion displays such as
+//! TanvasTouch use. The value of a pixel is the friction at the pixel's place. Black is the lowest
+//! friction and white the highest.
 //!
-//! An image becomes an asset with the model `org.htex.map`, which stores the pixels unchanged and
-//! follows the place of the finger. The distance between pixels comes from the chunk `pHYs` (PNG,
-//! section 11.3.4.3), unless the user gives it. When an asset with this model is exported, the
-//! image has the same pixels. Any other texture is exported as one row of pixels. At one speed, the
-//! waves in this row have the magnitudes that the texture plays.
+//! An imported image becomes an asset with the model `org.htex.map`. This model stores the pixels
+//! unchanged and plays the friction at the finger's position. The distance between pixels comes
+//! from the chunk `pHYs` (PNG, section 11.3.4.3), unless the user gives it. When an asset with this
+//! model is exported, the image has the same pixels. Any other texture is exported as one row of
+//! pixels. If a finger slides over this row at the speed of the export, the row's waves have the
+//! magnitudes that the texture plays.
 
 mod asset;
 mod image;

@@ -13,23 +13,25 @@ use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
-/// The channels of a recording as they are in the file: without roles, and not scaled.
+/// The channels of a recording, with the same values as in the file. They have no roles and are not
+/// scaled.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelTable {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Times of the samples, seconds, ascending; only if the file has a time column.
+    /// Times of the samples, seconds, ascending. `None` if the file has no time column.
     pub time_s: Option<Vec<f64>>,
     /// Names of the channels. A channel without a name is called by its number, such as `#3`.
     pub names: Vec<String>,
-    /// The samples of each channel: at least two, finite, and equally many in every channel.
+    /// The samples of each channel. All channels have the same number of samples, at least two. All
+    /// samples are finite.
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. A sample rate in the options takes precedence; otherwise the rate
-/// comes from the time column, or from the file if it has no time column. The time column is not
-/// among the channels.
+/// Reads all channels of a file. The sample rate is taken from the options or, if the options have
+/// none, from the time column. If there is no time column either, it is the rate that the file
+/// states. The time column is not among the channels.
 ///
 /// # Errors
 /// The errors of [`read_recording`](crate::read_recording).

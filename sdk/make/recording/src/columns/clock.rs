@@ -1,4 +1,4 @@
-//! The sample rate of a table, from its time column or from the options.
+//! Determines the sample rate of a table from the options or from the time column.
 
 use htex_base::finding::{Findings, Notice};
 

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! A name begins with neither a digit nor an operator. It may contain spaces and a unit in
-//! brackets, as in `Fx [mN]` and `Lateral Force (m/s)`. A path begins with `/` and ends at a space
-//! or another operator, as in `/run1/fx`. Products and quotients of columns are allowed, so an
-//! expression need not be linear.
+//! brackets, as in `Fx [mN]` and `Lateral Force (m/s)`. A path, such as `/run1/fx`, begins with `/`
+//! and ends at a space or at an operator other than `/`. Products and quotients of columns are
+//! allowed, so an expression need not be linear.
 //!
 //! The expression is evaluated row by row. A result that is not finite is an error that names the
 //! row.
@@ -26,8 +26,8 @@ const MOST_DEEP: usize = 32;
 /// to evaluate them.
 const MOST_STEPS: usize = 256;
 
-/// How a role's values are computed: one column, or sums, differences, products and quotients of
-/// columns and numbers.
+/// An expression from which a role's values are computed: a single column, or sums, differences,
+/// products and quotients of columns and numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     text: String,
@@ -68,7 +68,8 @@ impl Expression {
         }
     }
 
-    /// Returns the expression as written. A file may have a column of exactly this name.
+    /// Returns the text of the expression as the user wrote it. If a file has a column with exactly
+    /// this name, the text means that column.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

@@ -1,4 +1,4 @@
-//! The column map, with which the user assigns roles to columns:
+//! The column map, in which the user assigns roles to columns, such as
 //! `lateral=lateral_V:0.4444,normal=-#3*0.31`.
 
 use std::fmt;
@@ -11,7 +11,7 @@ use crate::error::{ReadError, ReadProblem};
 /// Longest map that is accepted, bytes.
 const MOST_BYTES: usize = 16 << 10;
 
-/// The role of a column: which signal it holds.
+/// The role of a column, i.e. the signal that the column contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Lateral force along a single axis, newtons.
@@ -41,7 +41,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// All roles, in the order in which columns are assigned to them.
+    /// All roles, in the order in which roles are assigned to columns.
     pub const ALL: [Self; 12] = [
         Self::Lateral,
         Self::LateralX,
@@ -91,8 +91,8 @@ pub struct MapEntry {
     /// The column, or an expression over columns.
     pub values: Expression,
     /// Factor that converts the values to the role's unit (N, the quantity's unit, mm/s, s, mm).
-    /// Without a factor, the unit of a column is the unit in its name, and the values of an
-    /// expression must be in the role's unit.
+    /// Without a factor, a column has the unit in its name, and the values of an expression must
+    /// already be in the role's unit.
     pub scale: Option<f64>,
 }
 
@@ -100,7 +100,8 @@ impl MapEntry {
     /// Parses the values of a role, in the form `EXPRESSION[:SCALE]`.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if the text is not an expression; it gives the place in the text.
+    /// [`ReadProblem::Map`] if the text is not an expression. The problem gives the place in the
+    /// text.
     ///
     /// ```
     /// # use htex_recording::{MapEntry, Role};
@@ -128,9 +129,9 @@ impl MapEntry {
 /// Column map: the user's assignment of columns to roles.
 ///
 /// A role's values are a column or an expression: sums, differences, products and quotients of
-/// numbers and columns, with parentheses. Columns are given by name, by number (`#3`), by path
-/// (`/run1/fx`), or in quotes if the name contains an operator. If the whole text is the name of a
-/// column, it means that column.
+/// numbers and columns, with parentheses. A column is given by its name, its number (`#3`) or its
+/// path (`/run1/fx`). A name that contains an operator must be in quotes, except if the name is the
+/// whole text.
 ///
 /// ```
 /// # use htex_recording::ColumnMap;

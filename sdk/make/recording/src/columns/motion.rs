@@ -9,8 +9,9 @@ const WINDOW_S: f64 = 0.05;
 
 /// Returns the speed of each sample in mm/s, from one or two coordinates in mm of equal length.
 ///
-/// The position is first averaged over 50 ms. The speed is then the change of this average over 50
-/// ms around each sample, divided by the time. Both windows are shorter at the ends.
+/// The position is first averaged over 50 ms. The speed at a sample is the change of this average
+/// over the 50 ms around the sample, divided by the time. Near the ends of the recording, both
+/// windows are shorter.
 pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Roles and units, recognised from the names of columns.
+//! Recognises roles and units from the names of columns.
 
 use htex_format::Quantity;
 

@@ -1,4 +1,5 @@
-//! The column map for signals that arrive in blocks, such as the channels of an acquisition card.
+//! Applies a column map to signals that arrive in blocks, such as the channels of an acquisition
+//! card.
 
 use htex_base::finding::Notice;
 use htex_format::Quantity;
@@ -12,7 +13,7 @@ use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
 /// Converts channels to the values of roles, in the roles' units. The rules are the same as for
-/// files: first a map, then the names of channels.
+/// files: roles come from the column map or, if there is none, from the names of the channels.
 ///
 /// ```
 /// use htex_recording::{ColumnMap, Role, RowMap};
@@ -34,12 +35,12 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Assigns roles to channels, each of which is given as a name and a unit. The unit is empty if
-    /// it is not known. A unit in the name takes precedence.
+    /// Assigns roles to channels. Each channel is given by its name and its unit. An unknown unit
+    /// is an empty text. If the name also contains a unit, the unit in the name takes precedence.
     ///
     /// # Errors
-    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. Messages call
-    /// the origin of the channels `source`.
+    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. `source` is the
+    /// name of the channels' origin in messages.
     pub fn new(
         source: &str,
         channels: &[(String, String)],
@@ -56,8 +57,8 @@ impl RowMap {
         Ok(row_map)
     }
 
-    /// Assigns only the roles of the finger's motion (position or speed), as for the file of a
-    /// [`Tracker`](crate::Tracker).
+    /// Assigns only the roles of the finger's motion (position or speed), in the same way as for a
+    /// file from a [`Tracker`](crate::Tracker).
     ///
     /// # Errors
     /// The errors of [`Self::new`].
@@ -151,8 +152,8 @@ impl RowMap {
         &self.selection.warnings
     }
 
-    /// Returns the values of each role. `channels` has one vector of samples for each channel, all
-    /// of equal length. A division by zero gives a value that is not finite.
+    /// Returns the values of each role. `channels` has one vector of samples for each channel. All
+    /// vectors must have the same length. A division by zero gives a value that is not finite.
     #[must_use]
     pub fn values(&self, channels: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let rows = channels.first().map_or(0, Vec::len);

@@ -1,4 +1,4 @@
-//! Selection of a file's columns, with their roles and units.
+//! Selects the columns of a file that are used, with their roles and units.
 
 use htex_base::finding::{Hint, Notice};
 use htex_format::Quantity;

@@ -1,9 +1,9 @@
 //! Reader of Arrow IPC files (Feather version 2) and streams. It reads numeric columns and skips
-//! the values of all others.
+//! the values of all other columns.
 //!
 //! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The
-//! metadata are verified flatbuffers of the crate `arrow-ipc`. That crate's own reader is not used,
-//! because it trusts the sizes stated in a file.
+//! metadata are flatbuffers, which the crate `arrow-ipc` verifies and decodes. The file reader of
+//! this crate is not used, because it trusts the sizes stated in a file.
 
 use std::fmt::Display;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! The columns of an Arrow schema, and which buffers of a batch belong to each column.
+//! The columns of an Arrow schema, and the buffers of a batch that belong to each column.
 
 use arrow_ipc::{Endianness, Field, Precision, Type};
 

@@ -1,4 +1,4 @@
-//! Numbers of either byte order, read from files whose stated sizes cannot be trusted.
+//! Reads numbers of either byte order from files. The sizes that a file states are not trusted.
 
 use std::io::{self, ErrorKind, Read};
 

@@ -1,6 +1,7 @@
 //! Reader of FLAC: losslessly compressed integer samples of up to eight channels.
 //!
-//! `claxon` reads the format; `symphonia` is not used because it is under the MPL.
+//! The crate `claxon` decodes the format. The crate `symphonia` is not used because its licence is
+//! the MPL.
 
 use std::io::Read;
 

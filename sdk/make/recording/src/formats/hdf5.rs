@@ -1,8 +1,9 @@
-//! Reader of HDF5, and of MATLAB's version 7.3, which is HDF5. Data sets are addressed by path.
+//! Reader of HDF5 files. MATLAB files of version 7.3 are also HDF5. Data sets are addressed by
+//! path.
 //!
 //! The crate `hdf5-reader` limits chunks, headers and depth, has no C code, and does not follow
-//! links to other files. Alternatives: `hdf5` binds the C library; `hdf5-pure` also contains a
-//! writer and has 120,000 lines.
+//! links to other files. Two other crates were not chosen: `hdf5` needs the C library, and
+//! `hdf5-pure` also contains a writer and has 120,000 lines.
 
 use std::collections::HashSet;
 use std::sync::Arc;

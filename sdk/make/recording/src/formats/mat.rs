@@ -1,12 +1,13 @@
 //! Reader of MATLAB version 5 files (`save -v6` and `-v7`): numeric matrices, also inside structs.
 //!
-//! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements; each has a
-//! tag with type and size, and then its data. A compressed element is a zlib stream that contains
-//! one element. Nothing is decompressed into memory: the file is read once for the names, and then
-//! the variables that are used are read once more.
+//! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements. Each
+//! element consists of a tag, which has the type and the size, and of data. A compressed element is
+//! a zlib stream that contains one element. Streams are decompressed piece by piece, so that a
+//! decompressed element is never in memory as a whole. The file is first read for the names of its
+//! variables. The variables that are used are then read a second time.
 //!
-//! This reader is written for this project, because the crate `matfile` does not read structs and
-//! reads a whole file into memory.
+//! This reader was written for this project because the crate `matfile` does not read structs and
+//! reads the whole file into memory.
 
 use std::fmt::Display;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};

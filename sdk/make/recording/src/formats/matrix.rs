@@ -1,4 +1,5 @@
-//! Named arrays of one or two dimensions, read as columns, for MATLAB and HDF5.
+//! Reads named arrays of one or two dimensions as columns. The readers of MATLAB and HDF5 files use
+//! this module.
 
 use crate::error::{Fault, ReadProblem};
 use crate::sheet::Columns;

@@ -50,11 +50,14 @@ use crate::value_limit::ValueLimit;
 #[non_exhaustive]
 pub struct Format {
     pub name: &'static str,
-    /// File extensions, in lower case. They decide only for files without a known signature.
+    /// File extensions, in lower case. The extension determines the format only if the file has no
+    /// known signature.
     pub extensions: &'static [&'static str],
-    /// Signatures: byte sequences with their offsets in the file. One match is enough.
+    /// Signatures: byte sequences with their offsets in the file. A file has this format if one of
+    /// the signatures matches.
     pub signatures: &'static [(usize, &'static [u8])],
-    /// The feature of this crate that builds the format's reader, if it needs one.
+    /// The feature of this crate that enables the format's reader; empty if the reader is always
+    /// included.
     pub feature: &'static str,
     open: Option<Open>,
 }
@@ -167,14 +170,14 @@ impl Format {
         signatures.any(|(at, bytes)| front.get(*at..).is_some_and(|all| all.starts_with(bytes)))
     }
 
-    /// Whether this build can read the format.
+    /// Returns whether this build can read the format.
     #[must_use]
     pub fn is_built(&self) -> bool {
         self.open.is_some()
     }
 }
 
-/// Returns the names of all formats for use in a text: `CSV, WAV, FLAC`.
+/// Returns the names of all formats as a text such as `CSV, WAV, FLAC`.
 #[must_use]
 pub fn format_names() -> String {
     let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();

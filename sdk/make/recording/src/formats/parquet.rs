@@ -1,7 +1,7 @@
-//! Reader of Parquet: numeric columns that are not lists.
+//! Reader of Parquet files. It reads numeric columns that are not lists.
 //!
-//! The crate `parquet` panics on damaged files in three places. This module checks the files for
-//! such damage before the crate reads them.
+//! On some damaged files, the crate `parquet` panics (in three places of its code). This module
+//! checks a file for such damage before the crate reads it.
 
 use std::io::{BufReader, Read};
 

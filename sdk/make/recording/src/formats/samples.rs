@@ -21,9 +21,10 @@ pub(crate) struct Samples<'a> {
 /// The order of samples in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// One sample of each channel in turn.
+    /// The first sample of every channel, then the second sample of every channel, and so on.
     Interleaved,
-    /// Channel after channel, each of this length.
+    /// All samples of the first channel, then all samples of the second channel, and so on. The
+    /// number is the length of each channel.
     Planar(u64),
 }
 

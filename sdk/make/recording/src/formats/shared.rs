@@ -1,4 +1,4 @@
-//! An input shared by several readers of a library.
+//! An input that several readers of a third-party crate share.
 
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,11 +1,12 @@
-//! Reader of TDMS, LabVIEW's file format: channels in groups, with their sample rate.
+//! Reader of TDMS, LabVIEW's file format. A file contains groups of channels with their sample
+//! rates.
 //!
 //! Layout: "TDMS File Format Internal Structure", National Instruments. A file consists of
-//! segments. Each segment contains the objects that it changes, and raw data in chunks. The
-//! directory of all segments is read first, then the channels that are used.
+//! segments. Each segment contains the objects that it changes, and raw data in chunks. The reader
+//! first reads the directory of all segments, and then the values of the channels that are used.
 //!
-//! This reader is written for this project: the crate `tdms` unwraps values that a damaged file may
-//! lack, and it reads only from files.
+//! This reader was written for this project because the crate `tdms` panics if a damaged file lacks
+//! certain values, and because it cannot read from memory.
 
 use std::io::{Seek, SeekFrom};
 

@@ -1,7 +1,7 @@
 //! Lengths of structures in Thrift's compact protocol
 //! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), in which
-//! Parquet writes its headers. The lengths are checked because the library that reads the headers
-//! loops over a list as often as the list claims to have elements.
+//! Parquet writes its headers. The lengths are checked before the crate `parquet` reads the
+//! headers, because that crate trusts the number of elements that a list states.
 
 /// Deepest allowed nesting of structures and lists.
 const DEEPEST: usize = 32;

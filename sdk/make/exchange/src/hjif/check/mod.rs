@@ -1,6 +1,6 @@
-//! Checks the rules for `.hjif` files: limits, and those rules of the reference software's
-//! conformance check (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that concern
-//! the parts that are read.
+//! Checks the rules for `.hjif` files. Some rules are limits of this reader. The others are from
+//! the conformance check of the reference software (source/IOHaptics/src/IOJson.cpp,
+//! `semanticConformanceCheck…`). Only the parts of a file that this reader reads are checked.
 
 mod band;
 

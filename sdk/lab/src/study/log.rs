@@ -72,7 +72,7 @@ impl Log {
         Ok((log, lines))
     }
 
-    /// Appends a line and returns once it is on disk.
+    /// Appends a line to the file. Returns after the line is on disk.
     ///
     /// # Errors
     /// [`LabError::File`]. The line in the file may then be incomplete. An incomplete line is

@@ -13,15 +13,16 @@
 //!
 //! From a study to ratings:
 //!
-//! 1. `read`: reads `study.toml` and checks the files it names. Problems become findings. The rules
-//!    for scenes also apply to a study's motion, device and assets.
-//! 2. `plan`: computes the order of trials for every participant from `study.toml` alone.
+//! 1. `read`: reads `study.toml` and checks the files that `study.toml` names. Problems become
+//!    findings. The rules for scenes also apply to a study's motion, device and assets.
+//! 2. `plan`: computes the order of trials for every participant, using only `study.toml`.
 //! 3. `session`: takes one participant through the plan. One function updates the `progress`, both
 //!    for lines read from the file and for lines just recorded. `log` appends a line to the file
 //!    and flushes the line to disk.
 //! 4. `run`: plays trials, shows views and asks questions, through three traits: a rig (renderer
 //!    and device), an asker (terminal or page) and a clock. `felt` records the signal of a sensor
-//!    while a trial plays. It uses the same reader and writer as guided recordings.
+//!    while a trial plays. The reader and the writer of the recording are the same as for guided
+//!    recordings.
 //! 5. `export`: makes the table of all ratings. `felt_spectra`: makes the table with the spectra of
 //!    the felt forces.
 

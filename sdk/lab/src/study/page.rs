@@ -53,7 +53,7 @@ impl Touch {
     }
 }
 
-/// A session's page. It is served until this value is dropped.
+/// A session's page. This machine serves the page until this value is dropped.
 pub struct Page {
     asked: Arc<PageState>,
     served: LocalPage,

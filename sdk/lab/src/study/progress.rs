@@ -1,7 +1,8 @@
-//! Computes the progress of a session from its plan and the lines of its file.
+//! Computes the progress of a session from the session's plan and from the lines in its file of
+//! answers.
 //!
-//! The plan and the progress are not stored. They are computed from the files, so they agree with
-//! the file of answers even after a session was killed.
+//! The plan and the progress are not stored but computed from the files. So even after a session
+//! was killed, the plan and the progress agree with the file of answers.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -16,7 +17,8 @@ const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 /// The next step of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// A trial is rated by one attribute. The trial is played first, unless it was just played.
+    /// A trial is rated by one attribute. The trial is played before the rating, unless it was just
+    /// played.
     Rate(Phase, Trial, Attribute),
     /// The participant sets the level of a texture. In training, before the texture's first
     /// practice trial, the level rises until the participant feels the texture. In the gain phase,

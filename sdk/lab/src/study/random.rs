@@ -1,5 +1,5 @@
-//! Random numbers of a study. Each purpose has its own generator, so that its numbers do not depend
-//! on those of other purposes.
+//! Random numbers of a study. Each purpose has a separate generator, so that the numbers for one
+//! purpose do not depend on how many numbers other purposes use.
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -89,9 +89,9 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     }
 }
 
-/// Checks the files, motion and device of a study by the rules for scenes. For this, each texture
-/// is opened with each model, as in the trials. `path` is the study file. `device` replaces
-/// settings of the study's own device; the default value changes nothing.
+/// Checks the files, motion and device of a study by the rules for scenes. To check the files, each
+/// texture is opened with each model, in the same way as in the trials. `path` is the study file.
+/// `device` replaces settings of the study's own device; the default value changes nothing.
 pub fn check_files(
     study: &Study,
     path: &Path,

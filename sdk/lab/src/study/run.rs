@@ -25,8 +25,8 @@ const MOST_REPEATS: u32 = 2;
 pub enum SessionEnd {
     /// The session is over.
     Done,
-    /// The session was interrupted before its end. It continues from there when [`run`] is called
-    /// again.
+    /// The session was interrupted before its end. A later call of [`run`] continues the session at
+    /// the same step.
     Left,
 }
 

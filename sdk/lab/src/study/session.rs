@@ -39,14 +39,16 @@ pub struct Presentation {
     pub output: Option<OutputLevels>,
     /// Number of earlier attempts at this trial that were stopped, for any reason.
     pub stops: u32,
-    /// The file with the force that a sensor recorded during the trial, if it was recorded.
+    /// The file with the force that a sensor recorded during the trial. `None` if no force was
+    /// recorded.
     pub felt: Option<FeltFile>,
     /// Number of earlier attempts at this trial that ended because the device ran out of samples.
     pub repeats: u32,
 }
 
 impl<'a> Session<'a> {
-    /// Opens a session in a folder. It starts a new session, or continues a session where it ended.
+    /// Opens a session in a folder. Starts a new session or, if the participant has a file of
+    /// answers in this folder, continues the session at the next step.
     ///
     /// # Errors
     /// The errors of [`Log::open`], and [`LabError::Line`] if a line does not belong to the plan.

@@ -28,13 +28,15 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// How much of the difference between each representation and the recorded spectra can be felt:
-    /// one list for each representation, with one value for each of its conditions. The value is
-    /// `None` at a condition that was not recorded but computed between recorded conditions.
+    /// How much of the difference between a representation and the recorded spectra can be felt.
+    /// There is one list for each representation, with one value for each of the representation's
+    /// conditions. The value is `None` at a condition that was not recorded but computed between
+    /// recorded conditions.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
-    /// Notes about the recordings, less severe than warnings. They say what was left out, and why.
+    /// Notes about the recordings, less severe than warnings. A note names something that was left
+    /// out, and the reason.
     pub notes: Vec<Notice>,
     /// All findings about the recordings, in the order of the recordings.
     pub findings: Vec<RecordingFinding>,

@@ -1,9 +1,10 @@
 //! Repeatability: how much the spectra of different blocks of time differ within one texture.
 //!
-//! Overlapping windows share samples. If every second window were averaged into one half, both
-//! halves would share samples, and the difference between the halves would be several times too
-//! small. Blocks of time share no samples. Each block lasts up to a second. The difference between
-//! blocks therefore includes the drift of texture, finger and motion within about a second.
+//! Overlapping windows share samples. Suppose that every second window were averaged into one half
+//! and all other windows into the other half. Both halves would share samples, and the difference
+//! between them would be several times too small. Blocks of time share no samples. Each block lasts
+//! up to a second. The difference between blocks therefore includes the drift of texture, finger
+//! and motion within about a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};

@@ -13,8 +13,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. Only representations can be played, so measures on rendered
-    /// samples are missing if the other spectrum is a recording's.
+    /// The measures of agreement. If two recordings are compared, measures on rendered samples are
+    /// missing, because only representations can be rendered.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.
@@ -74,8 +74,9 @@ impl Difference {
     }
 }
 
-/// Compares each representation of an asset with a recording. The comparison is at the recording's
-/// speed and force if both are known, otherwise at the asset's default condition.
+/// Compares each representation of an asset with a recording. If the recording's speed and force
+/// are known, the representations are compared at this speed and force. If not, they are compared
+/// at the asset's default condition.
 ///
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.

@@ -10,7 +10,7 @@ use crate::settings::Metadata;
 /// signatures stay as they are.
 ///
 /// # Errors
-/// When the bytes are not a valid asset, or saving it would lose data.
+/// When the bytes are not a valid asset, or when saving the changed asset would lose data.
 pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
     let mut asset = Asset::from_bytes(bytes)?;
     let lost = lost(bytes, &asset);

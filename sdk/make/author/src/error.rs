@@ -121,7 +121,7 @@ pub enum AuthorError {
         /// Number of windows.
         windows: usize,
     },
-    /// Speed and force are constant, so there is no grid.
+    /// Speed and force are constant, so a grid of conditions cannot be made.
     #[error(
         "the motion is constant: {:.4} to {:.4} mm/s and {:.4} to {:.4} N; fit without a grid, which gives one condition",
         .speed_mm_s[0], .speed_mm_s[1], .force_n[0], .force_n[1]
@@ -300,7 +300,8 @@ pub enum AuthorError {
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     NoParameters,
-    /// Some conditions of a texture made by hand have a speed or a force, and others have none.
+    /// In a texture made by hand, some conditions have a speed or a force, but not all conditions
+    /// have the same.
     #[error(
         "some conditions have only a speed or only a force; give both for every condition, or neither"
     )]

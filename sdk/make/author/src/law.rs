@@ -7,10 +7,10 @@
 //! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
 //! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
 //! with the speed for other reasons. In recorded strokes without moving lines, the best exponent
-//! `a` was anywhere between -0.5 and 1.5. It lowered the squared difference only to 0.25 to 0.9 of
-//! the value without a shift. Therefore an exponent counts as measured only if the squared
-//! difference falls to a quarter of the value without a shift, or to a quarter of the value at the
-//! assumed exponent.
+//! `a` was anywhere between -0.5 and 1.5. With this exponent, the squared difference was still 0.25
+//! to 0.9 of the value without a shift. Therefore an exponent counts as measured only if the
+//! squared difference falls to a quarter of the value without a shift, or to a quarter of the value
+//! at the assumed exponent.
 
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 

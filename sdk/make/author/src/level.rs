@@ -2,12 +2,13 @@
 //!
 //! By default the level of a representation is the level of its recording. With `--level fitted` it
 //! is the level of the model's own fit, which differs from the recording by up to 6 dB on simulated
-//! surfaces. The levels of sBeta and sSlope are too high: sBeta is fitted to the ten largest peaks
-//! and to some other bins, sSlope to the largest bin, and in a noisy estimate these bins are too
-//! high. The level of MFCC is too low because MFCC averages logarithms. For a model such as Bands,
-//! the level follows from the energies that it stores. The descriptor of such a model states this
-//! ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the model's fit.
-//! sBeta and sSlope round their parameters in the same way as files before they compute the level.
+//! surfaces. The levels of sBeta and sSlope are too high, because these models are fitted to the
+//! largest bins: sBeta mainly to the ten largest peaks, sSlope to the largest bin. In a noisy
+//! estimate, the largest bins are too high. The level of MFCC is too low because MFCC averages
+//! logarithms. For a model such as Bands, the level follows from the energies that it stores. The
+//! descriptor of such a model states this ([`htex_host::Descriptor::keeps_level`]), and the asset
+//! keeps the level of the model's fit. sBeta and sSlope round their parameters in the same way as
+//! files before they compute the level.
 //!
 //! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate,
 //! because the conversion to the player's rate removes up to half of the power near that frequency.
@@ -38,7 +39,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// Both sources, in the order of the command line's help.
+    /// Both sources of the level, in the order of the command line's help.
     pub const ALL: &[Self] = &[Self::Fitted, Self::Recording];
 
     /// Returns the name used in recipes and on the command line.

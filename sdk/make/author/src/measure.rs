@@ -165,7 +165,7 @@ fn rendered_spectrum(
 /// above the samples' Nyquist frequency are 0.
 ///
 /// # Errors
-/// When there are too few samples, or they are not finite.
+/// When there are too few samples, or some samples are not finite.
 pub fn spectrum_of_samples(
     samples: &[f32],
     rate_hz: f64,

@@ -66,7 +66,7 @@ pub struct AssetRequest {
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
-    /// Options whose values differ from their defaults. They are stored in the provenance.
+    /// Options whose values differ from their defaults, to be stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
     /// Program and version, stored in the provenance.
     pub tool: String,

@@ -32,7 +32,7 @@ pub enum Averaging {
     /// processing). For noise, the mean is 1.05 dB below the RMS (a factor of √π/2, Rayleigh
     /// distribution).
     Magnitude,
-    /// Root of the mean power. For noise and for tones, this is the RMS.
+    /// Root of the mean power. For noise and for tones, the result is the RMS.
     #[default]
     Rms,
     /// Magnitude of the mean of the complex spectra. Only signals with the same phase in all
@@ -84,8 +84,8 @@ impl SpectrumOptions {
     }
 }
 
-/// The spectra of a recording's segments in the band. They are compensated for the setup's
-/// response, and the axes are combined into one.
+/// The spectra of a recording's segments in the band. The spectra are compensated for the setup's
+/// response. The axes of a recording are combined into one spectrum.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
     pub quantity: Quantity,

@@ -1,5 +1,5 @@
-//! The first stage of a fit. From a recording, it computes the spectra of the segments, the motion
-//! in the segments, and the findings. No later stage reads the recording again.
+//! The first stage of a fit. From a recording, this stage computes the spectra of the segments, the
+//! motion in the segments, and the findings. No later stage reads the recording again.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions
 #[derive(Debug, Clone)]
 pub struct Take {
     pub recording: Recording,
-    /// Speed and force given by the user; they take precedence over measured ones.
+    /// Speed and force given by the user. Given values take precedence over measured values.
     pub given: Exploration,
 }
 
@@ -55,7 +55,7 @@ pub struct SegmentedTake {
 /// # Errors
 /// When the recording is too short, its sample rate is too low, no segment remains, the setup's
 /// response is zero or not finite in the band, or a speed or force is out of range. If `strict` is
-/// true, findings that are errors or warnings also give an error.
+/// true, there is also an error if the recording has findings that are errors or warnings.
 pub fn segment_take(
     take: &Take,
     options: &SpectrumOptions,

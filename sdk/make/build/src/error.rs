@@ -34,7 +34,7 @@ pub enum BuildError {
         .textures.len(), crate::named_briefly(.textures)
     )]
     Removes { textures: Vec<String> },
-    /// The result of a job is damaged. The text says how.
+    /// The result of a job is damaged. The text describes the damage.
     #[error("the result of a job is damaged ({0}); make it again")]
     Damaged(String),
     /// The build was stopped.

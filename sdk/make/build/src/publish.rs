@@ -98,8 +98,8 @@ impl Destination {
         self.remote.as_ref()
     }
 
-    /// Tests whether a file can be written at the URI and removed again. This finds errors before
-    /// hours of fitting. Without a URI, does nothing.
+    /// Tests whether a file can be written at the URI and removed again. Call this function before
+    /// fitting, so that such errors are found before hours of work. Without a URI, does nothing.
     ///
     /// # Errors
     /// If the file cannot be written or removed.

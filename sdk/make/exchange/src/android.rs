@@ -23,7 +23,7 @@ use crate::profile::Profile;
 pub(crate) const LONGEST_POINT_MS: u64 = 1_000;
 const FORMAT: &str = "android.os.VibrationEffect";
 
-/// The same effect in three forms. A device plays one of them.
+/// The same effect in three forms. A device plays one of these forms.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Android {
@@ -168,8 +168,8 @@ impl Android {
         Ok(())
     }
 
-    /// Returns the vibration that the effect's `WaveformEnvelopeBuilder` describes. It starts from
-    /// the amplitude 0.
+    /// Returns the vibration that the effect's `WaveformEnvelopeBuilder` describes. The vibration
+    /// starts from the amplitude 0.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let envelope = &self.waveform_envelope;

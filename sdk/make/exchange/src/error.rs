@@ -1,4 +1,5 @@
-//! Errors of import and export. Each states what is wrong, where in the file, and what to do.
+//! Errors of import and export. Each error message says what is wrong, where in the file, and what
+//! to do.
 
 use htex_author::AuthorError;
 
@@ -9,7 +10,7 @@ pub struct Fault {
     /// The place of the fault: a JSON pointer (RFC 6901), or a text such as `line 3 column 7`.
     /// Empty if the fault concerns the whole file.
     pub place: String,
-    /// What is wrong there, and what to do.
+    /// What is wrong at this place, and what to do.
     pub problem: String,
 }
 

@@ -157,8 +157,8 @@ pub struct ActuatorPlay {
 /// vibration that it plays. A file of such a format is read back, to measure the loss.
 ///
 /// # Errors
-/// When the format cannot be written or does not accept a setting, a number is out of range, the
-/// actuator cannot play such files, or the asset cannot be played.
+/// When the format cannot be written or does not accept a setting, when a number is out of range,
+/// when the actuator cannot play such files, or when the asset cannot be played.
 pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;

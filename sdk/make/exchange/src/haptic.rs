@@ -67,8 +67,7 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    /// The frequency envelope. It may be missing, null or empty; all three mean that there are no
-    /// frequency points.
+    /// The frequency envelope. If it is missing, null or empty, there are no frequency points.
     #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
 }

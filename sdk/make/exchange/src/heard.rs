@@ -29,7 +29,7 @@ pub enum Path {
 pub struct SceneSound<'a> {
     /// The scene's name, which is stored in the exported file.
     pub name: &'a str,
-    /// Licence and author that apply to the exported file. They cover all textures of the scene.
+    /// Licence and author that apply to all textures of the scene, and so to the exported file.
     pub rights: &'a Rights,
     pub quantity: Quantity,
     /// The frequency band of the scene's textures.

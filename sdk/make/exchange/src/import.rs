@@ -180,8 +180,8 @@ impl ImportedAsset {
         }
     }
 
-    /// Returns the bytes of the asset's file. If the imported file contains the asset, the asset's
-    /// bytes are returned unchanged. Otherwise the asset is encoded.
+    /// Returns the bytes of the asset's file. If the imported file contains an asset, the bytes of
+    /// this asset are returned unchanged. If not, the imported asset is encoded.
     ///
     /// # Errors
     /// When the asset breaks a rule of its format.

@@ -6,8 +6,8 @@
 //! an asset. From all other files, [`import`] reads a signal and fits models to it. The user gives
 //! the values that a file does not contain. **Export.** [`export`] plays an asset at a condition or
 //! along a stroke, reduces the vibration to what an actuator can play (its [`Profile`]), and writes
-//! the file. It then reads the file back, plays it through the profile, and compares this vibration
-//! with the asset's own samples.
+//! the file. [`export`] then reads the file back, simulates how the actuator plays the file, and
+//! compares the result with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};

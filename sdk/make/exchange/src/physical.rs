@@ -11,8 +11,8 @@ use crate::map;
 /// Values that the user gives because a file with a signal or an image does not contain them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Physical {
-    /// The physical value of the number 1 in the file, or of white in an image. It is in the unit
-    /// of the quantity, such as newtons for a lateral force.
+    /// The physical value of the number 1 in the file, or of white in an image. The value is in the
+    /// unit of the quantity, such as newtons for a lateral force.
     pub full_scale: Option<f64>,
     pub quantity: Quantity,
     /// Speed of the finger, mm/s.

@@ -9,8 +9,8 @@ use std::time::SystemTime;
 /// The file from which a recording was read, with the data that is needed to compute the file's
 /// hash.
 ///
-/// The hash is computed only when an asset's provenance needs it, because the file must be read a
-/// second time for the hash. This would make reading each recording slower by a tenth.
+/// The hash is computed only when an asset's provenance needs it. To compute the hash, the file
+/// must be read a second time. If every recording were hashed, reading would take a tenth longer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(FileIdentity);
 

@@ -33,8 +33,8 @@ impl MixedAsset<'_> {
 /// comes from the texture with the larger weight, or from `a` if the weights are equal. A texture
 /// may store triangles of conditions, in which a player interpolates. The result gets the triangles
 /// of the texture that gives the law, if that texture has exactly the conditions of the result.
-/// Otherwise the result has no stored triangles. If one of the two textures had triangles, this
-/// adds a warning.
+/// Otherwise the result has no stored triangles. In this case, a warning is added if one of the two
+/// textures had triangles.
 ///
 /// # Errors
 /// When the weight is out of range, the textures have no model in common, their quantity or band

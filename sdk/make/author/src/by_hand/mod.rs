@@ -2,8 +2,8 @@
 //! The paper names both methods as uses of a representation with few numbers (Balasubramanian &
 //! Vardar 2026, Discussion).
 //!
-//! Such an asset stores how it was made ([`htex_format::Made`]). It stores no measures of quality,
-//! because there is no recording to compare the asset with.
+//! An asset of such a texture stores how the texture was made ([`htex_format::Made`]). The asset
+//! stores no measures of quality, because there is no recording to compare it with.
 
 mod mix;
 mod parameters;

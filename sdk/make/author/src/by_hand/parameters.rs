@@ -32,8 +32,8 @@ pub struct ByHand {
 }
 
 impl ByHand {
-    /// Starts the description of a texture. Its quantity is the lateral force, its band is the
-    /// tactile band, and its speed and normal force are unknown.
+    /// Starts the description of a texture. By default, the quantity of the texture is the lateral
+    /// force, its band is the tactile band, and its speed and normal force are unknown.
     pub fn new(name: impl Into<String>, level_rms: f64, tool: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -100,7 +100,8 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, AuthorError>
     })
 }
 
-/// A texture to make from the parameters of one or more models, each at one or more conditions.
+/// A texture to make from the parameters of one or more models. Each model has parameters at one or
+/// more conditions.
 #[derive(Debug, Clone)]
 pub struct ByHandModels {
     pub name: String,

@@ -2,11 +2,11 @@
 //!
 //! A corner is the difference between a sample and the mean of its two neighbours. A texture has
 //! sharp corners of its own (stick and slip), so a large number of corners proves nothing. But a
-//! texture's corner lasts several samples, so it remains when one sample is repaired, i.e.
-//! interpolated from its neighbours. The corner of a single-sample outlier disappears. In 240
-//! third-party recordings, at most four corners of 12 times the usual size disappear per recording.
-//! Corners of five times the usual size disappear at no more than 0.1 % of the samples, except for
-//! 0.62 % in a recording of a motor's current.
+//! texture's corner lasts several samples, so the corner remains when one sample is repaired, i.e.
+//! replaced by a value interpolated from its neighbours. The corner of a single-sample outlier
+//! disappears. In 240 third-party recordings, at most four corners of 12 times the usual size
+//! disappear per recording. Corners of five times the usual size disappear at no more than 0.1 % of
+//! the samples, except for 0.62 % in a recording of a motor's current.
 
 use std::ops::Range;
 

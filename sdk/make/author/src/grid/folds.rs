@@ -1,11 +1,11 @@
 //! Cross-validation over time: each quarter of the recordings is left out in turn and predicted
-//! from the other three.
+//! from the other three quarters.
 //!
 //! Neighbouring cells share windows, and windows overlap. If a condition were predicted from
 //! neighbouring cells, the prediction would use some of the samples with which it is then compared.
-//! Blocks of time share no samples. The blocks are long because a finger and its motion drift. A
-//! short block would be predicted too well, from samples recorded within a second of it, and the
-//! error would be too small for a later playback.
+//! Blocks of time share no samples. The blocks are long because a finger and its motion drift.
+//! Samples recorded within a second of a short block would predict this block too well. The error
+//! would then be smaller than the error of a later playback.
 
 use std::ops::Range;
 

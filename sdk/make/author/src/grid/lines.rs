@@ -1,4 +1,4 @@
-//! The lines of a grid, i.e. its speeds and forces. The user gives them, or they are chosen from
+//! The lines of a grid, i.e. its speeds and forces. The lines are given by the user, or chosen from
 //! the motions of the steady windows.
 
 use super::request::Grid;

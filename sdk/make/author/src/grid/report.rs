@@ -56,8 +56,8 @@ pub struct GridReport {
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
-    /// Held-out error, decibels. Blocks of time are left out, and a player predicts them by
-    /// interpolating between the recorded spectra of the other blocks. The error is the RMS
+    /// Held-out error, decibels. Blocks of time are left out, and a player predicts their spectra
+    /// by interpolating between the recorded spectra of the other blocks. The error is the RMS
     /// difference in third octaves. `None` if the blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
     /// The held-out error of an asset with a single condition, decibels. This condition is the mean

@@ -1,6 +1,6 @@
 //! Colours: a palette for models and series, and the scales of the heat tables.
 //!
-//! The hues are based on Okabe and Ito's set. Light hues are replaced by darker ones, so that every
+//! The hues are based on Okabe and Ito's set. Light hues are replaced by darker hues, so that every
 //! line has a contrast of at least 3 : 1 on white, and any two models can be told apart in normal,
 //! protan, deutan and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about
 //! 17 or more).

@@ -38,7 +38,8 @@ settings! {
         ))]
         pub models: Option<Vec<String>>,
 
-        /// Fit options, named `MODEL.NAME`. They can also be given as a table for each model.
+        /// Fit options, named `MODEL.NAME`. In a recipe, the options of a model can also be given
+        /// as a table.
         #[serde(deserialize_with = "options")]
         #[schemars(
             with = "BTreeMap<String, BTreeMap<String, OptionSetting>>",

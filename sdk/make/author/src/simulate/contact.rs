@@ -55,7 +55,8 @@ pub(super) enum Material {
     /// frequencies do not follow the speed ([`Departures`]), the relief is read along a separate
     /// path instead. The number is the length of this path, mm.
     Piece(Relief, f64),
-    /// Endless material, read along the finger's path. It has one relief for each lateral axis.
+    /// Endless material with one relief for each lateral axis. The reliefs are read along the
+    /// finger's path.
     Endless(Box<[Track; 2]>),
 }
 

@@ -1,4 +1,4 @@
-//! A hand in free motion. It makes strokes in both directions, with random speeds and forces.
+//! A hand in free motion: strokes in both directions, with random speeds and forces.
 
 use std::f64::consts::PI;
 

@@ -2,8 +2,8 @@
 //!
 //! Use them for tests, examples and first steps without a recording rig. The paper's Results
 //! describe five surfaces: which are stronger, and at which frequencies their energy lies. The five
-//! simulated surfaces agree with this description. They are not measured, and every simulated file
-//! states that it is simulated.
+//! simulated surfaces agree with this description. No real surface was measured for them. Every
+//! simulated file states that it is simulated.
 //!
 //! The hand's speed and force vary. The friction coefficient is a fixed relief along the surface,
 //! which is read at the finger's position. Therefore the frequencies of the spectrum scale with the
@@ -190,8 +190,8 @@ impl SimulationOptions {
 
     /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz and, for
     /// sample rates below 20 kHz, an anti-aliasing filter. The response has a value every 5 Hz from
-    /// 0 to 1000 Hz, or to half the sample rate if that is less. A recording divided by it gives
-    /// the force at the finger.
+    /// 0 to 1000 Hz, or to half the sample rate if that is less. Dividing the spectrum of a
+    /// recording by this response gives the spectrum of the force at the finger.
     ///
     /// # Errors
     /// When an option is out of range.

@@ -1,4 +1,4 @@
-//! An endless relief. It is read along the finger's path, so the finger never touches the same
+//! An endless relief. Because it is read along the finger's path, the finger never touches the same
 //! place twice.
 
 use std::f64::consts::PI;

@@ -1,9 +1,9 @@
 //! Pareto fronts.
 
-/// Returns which points of (cost, error) are on the Pareto front. A point is not on the front if
-/// another point is better, i.e. if the other point has less cost and no more error, or less error
-/// and no more cost. A point with a number that is not finite is never on the front. Of points with
-/// equal cost and equal error, either all are on the front or none is.
+/// Returns which points of (cost, error) are on the Pareto front. A point is on the front if no
+/// other point is better. Another point is better if it has less cost and at most the same error,
+/// or less error and at most the same cost. A point with a number that is not finite is never on
+/// the front. Of points with equal cost and equal error, either all are on the front or none is.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| finite(&points[i])).collect();

@@ -1,5 +1,5 @@
-//! The knobs of a sweep, i.e. the settings that the sweep varies. These are options for storing and
-//! playing, and the fit options of models. If a model's descriptor lists no values for a fit option
+//! The knobs of a sweep, i.e. the settings that the sweep varies: options for storing and playing,
+//! and the fit options of models. If a model's descriptor lists no values for a fit option
 //! ([`FitOption::sweep`]), this module chooses the values.
 
 use htex_host::FitOption;

@@ -8,9 +8,8 @@ use htex_host::LoadedModel;
 use crate::AuthorError;
 use crate::tradeoff::{ErrorAxis, Subject};
 
-/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The model loaded in the first
-/// way is measured with all values of the knobs. Loaded in the other ways, it is measured only with
-/// the default settings.
+/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. For the first way, the model
+/// is measured with all values of the knobs; for the other ways, only with the default settings.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Ways of loading, each with its name and the model loaded in this way; at least one.

@@ -27,7 +27,8 @@ pub struct LeftOut {
 pub struct SweepResult {
     /// The error by which the points are judged.
     pub error: ErrorAxis,
-    /// The measured points. They are grouped by recording, in the order of the report's table.
+    /// The measured points, grouped by recording. The recordings are in the order of the report's
+    /// table.
     pub points: Vec<Point>,
     /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
@@ -36,7 +37,8 @@ pub struct SweepResult {
 /// Progress callback: finished steps, total steps, and the current step.
 pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 
-/// Measures every setting on every recording, using all cores, and then times them on one core.
+/// Measures the accuracy of every setting on every recording, using all cores. Then measures the
+/// times of the settings on one core.
 ///
 /// # Errors
 /// When the journal cannot be written, or when no model can be fitted to a recording. Also when the

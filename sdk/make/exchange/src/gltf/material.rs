@@ -9,9 +9,9 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a glTF 2.0 material. It refers to the texture that a finger
-/// feels when it slides over surfaces of this material. Properties that are not described here are
-/// allowed, including `extensions` and `extras`.
+/// The extension `HTEX_texture` of a glTF 2.0 material. The extension refers to the texture that a
+/// finger feels when it slides over surfaces of this material. Properties that are not described
+/// here are allowed, including `extensions` and `extras`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {

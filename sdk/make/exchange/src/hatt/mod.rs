@@ -14,9 +14,9 @@
 //! interpolation.
 //!
 //! Line spectral frequencies are stored as 32-bit floats, which limits the accuracy of the
-//! magnitudes. They are computed from the filter coefficients. The file also contains line spectral
-//! frequencies, but only with six decimals. With these, the depth of a notch would change by up to
-//! 0.02 dB.
+//! magnitudes. The importer computes them from the filter coefficients. The file also contains line
+//! spectral frequencies, but only with six decimals. Using these would change a notch by up to 0.02
+//! dB.
 
 mod asset;
 mod document;

@@ -22,9 +22,9 @@ const MOST_ERROR: f64 = 1e-6;
 /// Why the zeros of a polynomial could not be found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NotFound {
-    /// The search failed for these coefficients.
+    /// The search failed for the coefficients of this polynomial.
     Here,
-    /// The filters of the file together take too much work.
+    /// The zeros of all filters in the file would take too much computation.
     TooMuch,
 }
 

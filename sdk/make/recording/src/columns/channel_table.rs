@@ -13,8 +13,8 @@ use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
-/// The channels of a recording, with the same values as in the file. They have no roles and are not
-/// scaled.
+/// The channels of a recording, with the same values as in the file. Channels in this table have no
+/// roles and are not scaled.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelTable {
@@ -30,8 +30,8 @@ pub struct ChannelTable {
 }
 
 /// Reads all channels of a file. The sample rate is taken from the options or, if the options have
-/// none, from the time column. If there is no time column either, it is the rate that the file
-/// states. The time column is not among the channels.
+/// none, from the time column. If there is no time column either, the rate that the file states is
+/// used. The time column is not among the channels.
 ///
 /// # Errors
 /// The errors of [`read_recording`](crate::read_recording).

@@ -13,7 +13,8 @@ use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
 /// Converts channels to the values of roles, in the roles' units. The rules are the same as for
-/// files: roles come from the column map or, if there is none, from the names of the channels.
+/// files: the column map assigns roles first, and the names of the other channels may then
+/// determine further roles.
 ///
 /// ```
 /// use htex_recording::{ColumnMap, Role, RowMap};

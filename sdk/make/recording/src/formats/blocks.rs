@@ -1,5 +1,5 @@
-//! Reads files in blocks of whole lines. One small buffer is reused for all blocks. This takes less
-//! memory and time than a buffer as large as the file.
+//! Reads files in blocks of whole lines. One small buffer is reused for all blocks. Reusing it
+//! takes less memory and time than a buffer as large as the file.
 
 use std::io::Read;
 

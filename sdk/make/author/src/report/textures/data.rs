@@ -51,8 +51,8 @@ pub struct Measure {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texture {
     pub name: String,
-    /// Whether the texture comes from a simulated recording. The page says so wherever it names the
-    /// texture.
+    /// Whether the texture comes from a simulated recording. If so, the page marks the texture as
+    /// simulated wherever it names the texture.
     pub simulated: bool,
     /// Unit of the magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
     pub unit: String,

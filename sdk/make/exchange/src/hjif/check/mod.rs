@@ -1,5 +1,5 @@
-//! Checks the rules for `.hjif` files. Some rules are limits of this reader. The others are from
-//! the conformance check of the reference software (source/IOHaptics/src/IOJson.cpp,
+//! Checks the rules for `.hjif` files. Some rules are limits of this reader. All other rules are
+//! from the conformance check of the reference software (source/IOHaptics/src/IOJson.cpp,
 //! `semanticConformanceCheck…`). Only the parts of a file that this reader reads are checked.
 
 mod band;

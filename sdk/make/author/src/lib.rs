@@ -2,8 +2,9 @@
 //!
 //! [`fit_asset`] goes through four stages. Each stage is a function that takes the result of the
 //! stage before it. Only the first stage reads a recording. The definitions follow the section
-//! *Texture processing* of Balasubramanian & Vardar (2026), called the paper here. If the paper
-//! leaves a choice open, the documentation of the corresponding option states the choice made here.
+//! *Texture processing* of Balasubramanian & Vardar (2026), which is called "the paper" in this
+//! documentation. If the paper leaves a choice open, the documentation of the corresponding option
+//! states the choice made here.
 //!
 //! 1. `take` turns a [`Take`] into a [`SegmentedTake`] ([`segment_take`]). The module `segments`
 //!    chooses segments of 0.2 s: one in each complete sweep (where the friction exceeds its mean),
@@ -18,15 +19,15 @@
 //!    that share no sample. `law` estimates how frequencies and level follow the motion, and
 //!    `between` adds conditions that are computed by this law. The stage also takes the kind of
 //!    average. For recordings of a free motion, `grid` replaces stages 1 and 2. It defines a grid
-//!    of speeds and forces. For each point of the grid, it averages the windows in which the motion
-//!    is steady and near that point.
+//!    of speeds and forces. For each point of the grid, `grid` averages the windows in which the
+//!    motion is steady and near that point.
 //! 3. `fit` turns the conditions into the parameters of each model, rounded as the file stores
-//!    them. `level` computes the level of the *rounded* parameters, and `measure` compares their
-//!    magnitudes and their samples with the recording. If the error in bands is large,
-//!    `alternatives` tries other options and models, and lists those with a smaller error. For a
-//!    grid, the stage also measures held-out errors: it leaves out a block of time and compares the
-//!    block with what a player plays from the other blocks. The stage also takes the models with
-//!    their options, and the source of the level.
+//!    them. `level` computes the level of the *rounded* parameters. `measure` compares magnitudes
+//!    and samples that the models compute from the rounded parameters with the recording. If the
+//!    error in bands is large, `alternatives` tries other options and models, and lists those with
+//!    a smaller error. For a grid, the stage also measures held-out errors: it leaves out a block
+//!    of time and compares the block with what a player plays from the other blocks. The stage also
+//!    takes the models with their options, and the source of the level.
 //! 4. `asset` puts the conditions, parameters, levels and measures together as a [`FittedAsset`].
 //!    The stage also takes name, licence, author and tags.
 //!

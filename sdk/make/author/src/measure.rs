@@ -25,9 +25,11 @@ const SEED: u64 = 1;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
-    /// Energy in each of the nine bands relative to the reference, decibels.
+    /// Energy of the spectrum relative to the energy of the reference, in each of the nine bands,
+    /// decibels.
     pub band_error_db: Vec<f64>,
-    /// The gain that makes the total energy equal to the reference's, decibels.
+    /// The gain that would make the total energy equal to the total energy of the reference,
+    /// decibels.
     pub matching_gain_db: f64,
 }
 
@@ -128,7 +130,7 @@ pub(crate) fn rounding_error_db(
 /// spectral lines. For such a model, samples are rendered and measured (`rendered_spectrum`).
 ///
 /// # Errors
-/// When the model refuses the parameters, or renders samples that are not finite.
+/// When the model refuses the parameters, or when it renders samples that are not finite.
 pub fn read_spectrum(
     model: &LoadedModel,
     parameters: &[f64],

@@ -1,6 +1,6 @@
 //! The cache of job results. A result is found by the key of its job. Entries are authenticated
-//! ([`StateFolder`]). If an entry was written by another user, or a crash left it incomplete, the
-//! entry is not used and its job runs again. Entries are not flushed to disk one by one.
+//! ([`StateFolder`]). An entry that another user wrote, or that a crash left incomplete, is not
+//! used; its job runs again. Entries are not flushed to disk one by one.
 //!
 //! An entry that no texture uses any more stays for the time [`UNUSED`]. A user can therefore try a
 //! setting and undo the change without a new fit.

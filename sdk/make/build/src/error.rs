@@ -22,7 +22,7 @@ pub enum BuildError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] htex_base::files::FileError),
-    /// A remote file cannot be read or written.
+    /// A file on a web server or in an object store cannot be read or written.
     #[error(transparent)]
     Storage(#[from] htex_base::storage::StorageError),
     /// Another build is using the folder.

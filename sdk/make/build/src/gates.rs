@@ -1,7 +1,6 @@
 //! Gates: the requirements that an asset must meet to be in the library.
 //!
-//! The gates are applied when the results are assembled, so textures need no new fit when a gate
-//! changes.
+//! The gates are applied when the results are assembled, so a change of the gates needs no new fit.
 
 use crate::recipe::{Gates, ModelGate};
 use crate::report::{AssetReport, MissedGate};

@@ -1,10 +1,10 @@
 //! A job: the fit or import of one texture, described as data. Equal jobs give equal bytes on any
 //! machine.
 //!
-//! To make this true, a job does not use models that are installed on the machine, and its key
-//! depends on no folders or times. The key depends only on such metadata as affects how the texture
-//! plays (`contact`, `law`). The texture's name and its other metadata are applied to the fitted
-//! asset when the library is assembled ([`Job::apply_metadata`]).
+//! For this reason, a job does not use models that are installed on the machine. The key of a job
+//! does not depend on folders or times. Of the metadata, the key depends only on the entries that
+//! affect how the texture plays (`contact`, `law`). The texture's name and its other metadata are
+//! applied to the fitted asset when the library is assembled ([`Job::apply_metadata`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -83,7 +83,7 @@ pub struct Job {
     /// What kind of files the recordings are.
     #[serde(default)]
     pub kind: FileKind,
-    /// Settings that give what files with signals do not contain, such as the full scale.
+    /// Settings with the values that files with signals do not contain, such as the full scale.
     #[serde(default)]
     pub signal: SignalSettings,
     /// How the recordings are read. The setting `tracker` is not set, because each recording of the
@@ -100,16 +100,16 @@ pub struct Job {
     pub named: usize,
     /// Number of plugins that are embedded in the asset; they are the last in `plugins`.
     pub embedded: usize,
-    /// Location of the recipe, if it is remote. The recipe may name its own server, but no other
-    /// server on this machine or network.
+    /// Location of the recipe, if it is remote. The recipe may name files on the server from which
+    /// it comes, but on no other server of this machine or network.
     #[serde(default)]
     pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// The recording's name in reports and messages: the file's name, with enough folders before it
-    /// to distinguish it from the other recordings of the texture.
+    /// The recording's name in reports and messages: the file's name, preceded by as many folders
+    /// as are needed to distinguish the texture's recordings.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,

@@ -24,7 +24,7 @@ pub struct JobResult {
     pub sound: Vec<u8>,
 }
 
-/// Facts about a fit that are not in its asset.
+/// Results of a fit that are not stored in the asset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     pub outcome: Outcome,
@@ -110,7 +110,7 @@ impl JobResult {
     /// Decodes the result of the job with this key.
     ///
     /// # Errors
-    /// If the bytes do not belong to this job, or any bit has changed.
+    /// If the bytes are the result of another job, or if any bit has changed.
     pub fn from_bytes(key: &str, bytes: &[u8]) -> Result<Self, BuildError> {
         let damaged = |problem: &str| BuildError::Damaged(problem.to_owned());
         let line = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n');

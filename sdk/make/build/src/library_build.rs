@@ -1,4 +1,5 @@
-//! A build: plans the textures, fits those without a stored result, and assembles the library.
+//! A build. It plans the textures, fits the textures without a stored result, and assembles the
+//! library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -38,16 +39,16 @@ const HASHES: &str = "files.json";
 pub struct BuildOptions {
     /// Number of textures that are fitted at the same time; 0 means one for each processor.
     pub jobs: usize,
-    /// Whether to leave out a texture that cannot be made, and continue.
+    /// Whether the build continues if a texture cannot be made. The texture is then left out.
     pub keep_going: bool,
     pub limits: WasmLimits,
     /// Program and version, for the assets' provenance. Textures that another program or version
     /// has fitted are fitted again.
     pub program: String,
     /// Folder of the browser package with which the catalogue plays textures. If `None`, the
-    /// catalogue plays short recorded sounds of the textures.
+    /// catalogue plays short sounds that the build renders.
     pub browser_package: Option<PathBuf>,
-    /// Plugins that the user names. They can be WASM modules or native libraries; native libraries
+    /// Plugins that the user names. A plugin is a WASM module or a native library. Native libraries
     /// run with all rights of this program. A recipe can name only WASM modules.
     pub plugins: Vec<PathBuf>,
     /// Whether to refuse to remove textures of the previous library.

@@ -31,7 +31,7 @@ const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Number of copies at the same time. Most of the time they wait for the network.
 const AT_ONCE: usize = 8;
 
-/// Where the results of a build are written: a local folder, or a local folder and a URI.
+/// The places to which a build writes its results: a local folder and, if given, a URI.
 ///
 /// ```
 /// use htex_build::Destination;

@@ -22,8 +22,9 @@ const MOST_BYTES: u64 = 1 << 30;
 pub enum Why {
     /// No build of this user has fitted the texture in this folder yet.
     New,
-    /// Inputs of the fit have changed. The list contains the changed inputs among `recordings`,
-    /// `reading`, `options`, `plugins` and `program`, in this order.
+    /// Inputs of the fit have changed. The list contains the names of the changed inputs. The
+    /// possible names, in this order, are `recordings`, `reading`, `options`, `plugins` and
+    /// `program`.
     Changed(Vec<&'static str>),
     /// The stored result is damaged, or belongs to another user.
     Unusable,

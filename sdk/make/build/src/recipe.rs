@@ -57,8 +57,8 @@ pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
     /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
-    /// the recipe. Native libraries run with all rights, so a recipe cannot name them; only the
-    /// user can, with `htex build --plugin`.
+    /// the recipe. Native libraries run with all rights, so a recipe cannot name them. The user can
+    /// name them with `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }
@@ -115,7 +115,7 @@ pub struct Settings {
     /// template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
-    /// Properties that files with signals in other haptic formats do not contain, such as the full
+    /// Settings with the values that haptic files with signals do not contain, such as the full
     /// scale.
     #[serde(flatten)]
     pub signal: SignalSettings,
@@ -134,7 +134,7 @@ pub struct Settings {
     pub gates: Gates,
 }
 
-/// Speed and normal force: numbers, or templates that give numbers.
+/// Speed and normal force of recordings. Each value is a number, or a template that gives a number.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct At {
@@ -159,7 +159,7 @@ fn number_or_template(most: f64) -> Schema {
     json_schema!({ "anyOf": [{ "type": "number", "minimum": 0, "maximum": most }, { "type": "string" }] })
 }
 
-/// A number, or a template that gives one.
+/// A number, or a template that gives a number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum NumberOrTemplate {

@@ -25,8 +25,8 @@ pub struct Report {
     pub report: String,
     /// Program and version that made the build.
     pub program: String,
-    /// The error that ended the build, line by line. If there was an error, all other fields come
-    /// from the report of the earlier build, if there is one.
+    /// The error that ended the build, line by line; empty if the build succeeded. In this case,
+    /// all other fields are from the report of the earlier build, if there is one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library that the build made.
@@ -35,9 +35,9 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// For each model (by id), counts of the textures in the library whose difference from the
-    /// recordings is small at all conditions: below the difference threshold, or within the
-    /// variation of their recordings.
+    /// For each model (by id), two counts of textures in the library. The first counts textures
+    /// whose difference from the recordings is below the difference threshold at all conditions.
+    /// The second counts textures whose difference is within the variation of their recordings.
     pub felt_shares: BTreeMap<String, FeltShare>,
     /// For each code of a finding, the textures with this finding.
     pub findings: BTreeMap<String, FindingShare>,
@@ -128,7 +128,7 @@ pub struct AssetReport {
     /// Search terms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// Whether a recording comes from a simulator.
+    /// Whether any recording of the texture comes from a simulator.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
     /// Number of conditions.

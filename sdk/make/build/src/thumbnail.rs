@@ -10,8 +10,9 @@ const RANGE_DB: f64 = 40.0;
 /// Number of steps in that range.
 const STEPS: f64 = 63.0;
 
-/// A spectrum with 48 points, evenly spaced in log frequency over its band. The value 63 stands for
-/// the largest magnitude, and 0 for 40 dB below it or less.
+/// A spectrum with 48 points, evenly spaced in log frequency over the spectrum's band. The value 63
+/// is the largest magnitude of the spectrum. The value 0 is a magnitude at least 40 dB below the
+/// largest.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Thumbnail(pub Vec<u8>);

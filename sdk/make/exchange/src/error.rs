@@ -80,8 +80,8 @@ pub enum ExchangeError {
         value: f64,
         range: &'static str,
     },
-    /// The file, the asset inside it and the `.license` file next to it state different licences or
-    /// authors.
+    /// The file, the asset inside the file and the `.license` file next to the file state different
+    /// licences or authors.
     #[error("{}", disagree(.setting, .stated, &keyword))]
     Rights {
         /// `license` or `author`.

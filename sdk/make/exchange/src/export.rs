@@ -45,7 +45,8 @@ pub struct Export<'a> {
 }
 
 impl<'a> Export<'a> {
-    /// Creates the settings for an export of two seconds at the asset's default condition.
+    /// Creates the settings for an export to `format`, with a length of two seconds at the asset's
+    /// default condition.
     #[must_use]
     pub fn new(format: &'static Format) -> Self {
         Self {
@@ -153,8 +154,9 @@ pub struct ActuatorPlay {
     pub limited: f64,
 }
 
-/// Writes an asset as a file of another format. Some formats store not the asset itself but the
-/// vibration that it plays. A file of such a format is read back, to measure the loss.
+/// Writes an asset as a file of another format. Some formats store the vibration that the asset
+/// plays and not the asset itself. After writing such a file, this function reads the file back and
+/// measures the loss.
 ///
 /// # Errors
 /// When the format cannot be written or does not accept a setting, when a number is out of range,

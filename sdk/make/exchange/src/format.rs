@@ -32,9 +32,9 @@ pub struct Format {
     pub writes: Option<Writes>,
     /// Where the format's files store the licence and the author.
     pub rights: RightsPlace,
-    /// Which parts of a texture the format keeps, in words.
+    /// Text that says which parts of a texture the format stores.
     pub keeps: &'static str,
-    /// Which parts of a texture the format loses, in words.
+    /// Text that says which parts of a texture the format loses.
     pub loses: &'static str,
 }
 
@@ -51,8 +51,8 @@ pub enum Reads {
     /// The file is converted to an asset without a fit, because it contains units, speeds and
     /// forces.
     Asset(ReadAsset),
-    /// The file is an image of grey values over a surface. It is converted to an asset without a
-    /// fit.
+    /// The file is an image of grey values over a surface. The image is converted to an asset
+    /// without a fit.
     Map,
 }
 
@@ -92,8 +92,8 @@ type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, Exchan
 pub struct Sampling {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Speed of the finger, mm/s. It is used only for files whose positions are distances and not
-    /// times.
+    /// Speed of the finger, mm/s. The speed is used only for files whose positions are distances
+    /// and not times.
     pub speed_mm_s: f64,
 }
 
@@ -191,8 +191,7 @@ impl Format {
         self.check("import", takes.unwrap_or_default(), given)
     }
 
-    /// Checks that an export accepts the given settings, as [`Self::check_import`] does for an
-    /// import.
+    /// Checks that an export accepts the given settings, which are keywords such as `full_scale`.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
@@ -205,8 +204,8 @@ impl Format {
         self.check("export", takes.unwrap_or_default(), given)
     }
 
-    /// Does the same as [`Self::check_export`], for an export of what a scene plays. The scene
-    /// determines models, motion and seed, so their settings do not apply.
+    /// Checks that an export of a scene accepts the given settings. The scene determines models,
+    /// motion and seed, so settings for these do not apply.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ExchangeError, list};
 
-/// All profiles, in the order of the documents.
+/// All profiles, in the order in which documents list them.
 pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
     #[derive(Deserialize)]
     struct Profiles {
@@ -49,7 +49,7 @@ impl SourcedValue {
 pub enum Kind {
     /// An actuator that plays samples, and is strongest at its resonance.
     Resonant,
-    /// A motor with a rotating mass. It cannot play samples: it only receives a level.
+    /// A motor with a rotating mass. Such a motor receives only a level and cannot play samples.
     Rotating,
 }
 
@@ -65,7 +65,7 @@ pub struct Profile {
     pub resonance_hz: SourcedValue,
     /// Quality factor: resonance frequency divided by bandwidth.
     pub q: SourcedValue,
-    /// Lowest and highest frequency that the actuator can play, hertz.
+    /// Lowest frequency that the actuator can play, hertz. The highest frequency is `high_hz`.
     pub low_hz: SourcedValue,
     pub high_hz: SourcedValue,
     /// Largest peak acceleration of the housing, at the resonance, m/s².

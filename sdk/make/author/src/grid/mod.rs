@@ -1,4 +1,4 @@
-//! A grid of conditions, from recordings in which speed and force change freely.
+//! A grid of conditions, made from recordings in which speed and force change freely.
 //!
 //! Recordings are cut into windows of 0.2 s. Windows with nearly constant speed and force
 //! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`). Each
@@ -12,7 +12,7 @@
 //! Haptic Texture Toolkit (Culbertson, Unwin and Kuchenbecker 2014). The toolkit fits segments of
 //! nearly constant motion and places the fitted models in the plane of speed and force. For each
 //! model, `leave_out` compares the left-out blocks with what a player would play in their place.
-//! This error needs no knowledge of the true texture.
+//! The error of this comparison can be measured without knowing the true texture.
 
 mod cells;
 mod folds;

@@ -17,7 +17,8 @@ use crate::conditions::{ConditionSpectrum, four_digits};
 pub enum CellStatus {
     /// The cell has enough windows.
     Fitted,
-    /// The cell has enough windows together with the nearest windows of its neighbours.
+    /// The cell alone has too few windows, but enough together with the nearest windows of
+    /// neighbouring cells.
     Widened,
     /// The cell has too few windows and did not become a condition.
     Thin,
@@ -52,7 +53,7 @@ pub struct GridReport {
     pub speed_mm_s: Vec<f64>,
     /// Normal forces of the lines, newtons.
     pub force_n: Vec<f64>,
-    /// Number of windows of 0.2 s in the recordings; each overlaps the next by half.
+    /// Number of windows of 0.2 s in the recordings. Each window overlaps the next window by half.
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
@@ -61,8 +62,8 @@ pub struct GridReport {
     /// difference in third octaves. `None` if the blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
     /// The held-out error of an asset with a single condition, decibels. This condition is the mean
-    /// of all steady windows, scaled to each motion by the law. A useful grid has a smaller error
-    /// than this.
+    /// of all steady windows, scaled to each motion by the law. A useful grid has a smaller
+    /// held-out error than this single condition.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, ordered by speed and then by force.
     pub cells: Vec<GridCell>,

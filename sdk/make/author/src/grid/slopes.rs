@@ -1,10 +1,10 @@
 //! Correction of windows to the speed and force of their cell's crossing.
 //!
-//! The windows are read over equal paths ([`super::paths`]). In each third-octave band, the
-//! logarithm of the energy is fitted linearly against the logarithms of speed and force, over the
-//! windows around the crossing. Each window's spectrum is then scaled by the change that this fit
-//! predicts from the window's motion to the crossing. Without this correction, windows with a firm
-//! touch would dominate the mean of the cell.
+//! In all windows of a cell, the finger covers an equal path ([`super::paths`]). In each
+//! third-octave band, the logarithm of the energy is fitted linearly against the logarithms of
+//! speed and force, over the windows around the crossing. Each window's spectrum is then scaled by
+//! the change that this fit predicts from the window's motion to the crossing. Without this
+//! correction, windows with a firm touch would dominate the mean of the cell.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;

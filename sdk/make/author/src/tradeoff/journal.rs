@@ -43,8 +43,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates a journal for the file `path`. The file is not read here but when a sweep uses the
-    /// journal.
+    /// Creates a journal for the file `path`. This function does not read the file; the first sweep
+    /// that uses the journal does.
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), file: None, entries: Vec::new() }
     }

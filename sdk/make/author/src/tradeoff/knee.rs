@@ -1,4 +1,5 @@
-//! Knees of Pareto fronts: the points beyond which more cost reduces the error much less.
+//! Knees of Pareto fronts. Beyond the knee of a front, additional cost reduces the error much less
+//! than before the knee.
 
 use serde::Serialize;
 

@@ -10,7 +10,8 @@ use crate::tradeoff::knee::{Knee, along_front};
 use crate::tradeoff::point::{errors, others};
 use crate::tradeoff::{Point, QUANTISED, RECORDING, Tradeoff};
 
-/// Returns the report as self-contained HTML: the summary first, then every recording.
+/// Returns the report as self-contained HTML. The summary comes first, followed by a section for
+/// every recording.
 pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     let mut page = Page::new("Accuracy against bytes and time");
     page.html(&paragraph(&made_of(tradeoff)));

@@ -44,7 +44,7 @@ pub struct Point {
     /// Size of the stored parameters, bytes. For the recording, size of its single-precision
     /// samples.
     pub bytes: usize,
-    /// Memory that a stored loop or a filter needs during playback, bytes.
+    /// Memory that the playback needs for a stored loop or a filter, bytes.
     pub kept_bytes: usize,
     /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
     /// with the even blocks in third octaves. The unit is the difference between the odd and the
@@ -70,7 +70,8 @@ pub struct Point {
     pub on_time_front: bool,
 }
 
-/// Shares of the recordings whose difference from the model's magnitudes is small, from 0 to 1.
+/// Shares of the recordings for which the difference between the model's magnitudes and the
+/// recording is small. Each share is from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
     /// Share of the recordings whose difference is below the difference threshold, in every third
@@ -108,12 +109,12 @@ impl Shares {
     }
 }
 
-/// Returns the measures of points that are errors.
+/// Returns those measures of a point that are errors.
 pub fn errors() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged == MeasureKind::Error)
 }
 
-/// Returns the measures of points that are not errors.
+/// Returns those measures of a point that are not errors.
 pub fn others() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged != MeasureKind::Error)
 }

@@ -12,7 +12,8 @@ use crate::tradeoff::{ErrorAxis, Subject};
 /// is measured with all values of the knobs; for the other ways, only with the default settings.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Ways of loading, each with its name and the model loaded in this way; at least one.
+    /// Ways of loading, at least one. Each entry has the name of the way, and the model loaded in
+    /// this way.
     pub ways: Vec<(String, LoadedModel)>,
 }
 

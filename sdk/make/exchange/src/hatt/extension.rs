@@ -1,5 +1,5 @@
-//! The extension of an asset that stores those contents of a model file that are not used to play
-//! the texture.
+//! An extension of assets. It stores the contents of a model file that are not needed to play the
+//! texture.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,11 +24,11 @@ pub(crate) struct Hatt {
     /// Rate at which the toolkit runs its filters, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub sample_rate_hz: f64,
-    /// Highest speed of the toolkit's renderer, mm/s. The renderer plays all higher speeds as this
-    /// speed.
+    /// Highest speed of the toolkit's renderer, mm/s. The renderer treats all higher speeds like
+    /// this speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_speed_mm_s: Option<f64>,
-    /// Largest force of the toolkit's renderer, newtons. The renderer plays all larger forces as
+    /// Largest force of the toolkit's renderer, newtons. The renderer treats all larger forces like
     /// this force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_force_n: Option<f64>,

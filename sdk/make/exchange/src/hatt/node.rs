@@ -1,4 +1,4 @@
-//! A node of a model file: the filter at one speed and force.
+//! A node of a model file. It has a speed, a force, and the filter at this speed and force.
 
 use htex_dsp::all_zero::MAX_ORDER;
 use htex_dsp::line_spectrum::line_spectral_frequencies;
@@ -81,7 +81,7 @@ impl Node {
         })
     }
 
-    /// Returns the standard deviation of the noise multiplied by the gain, m/s²; 0 at a silent
+    /// Returns the product of the gain and the noise's standard deviation, m/s²; 0 at a silent
     /// node.
     pub fn deviation(&self) -> f64 {
         self.gain * self.variance.sqrt()

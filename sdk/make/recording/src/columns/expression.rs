@@ -13,8 +13,8 @@
 //! and ends at a space or at an operator other than `/`. Products and quotients of columns are
 //! allowed, so an expression need not be linear.
 //!
-//! The expression is evaluated row by row. A result that is not finite is an error that names the
-//! row.
+//! The expression is evaluated row by row. If a result is not finite, this is an error; the error
+//! names the row.
 
 use std::fmt;
 

@@ -128,10 +128,10 @@ impl MapEntry {
 
 /// Column map: the user's assignment of columns to roles.
 ///
-/// A role's values are a column or an expression: sums, differences, products and quotients of
-/// numbers and columns, with parentheses. A column is given by its name, its number (`#3`) or its
-/// path (`/run1/fx`). A name that contains an operator must be in quotes, except if the name is the
-/// whole text.
+/// The values of a role are a column, or an expression over columns. An expression consists of
+/// sums, differences, products and quotients of numbers and columns, with parentheses. A column is
+/// given by its name, its number (`#3`) or its path (`/run1/fx`). A name that contains an operator
+/// must be in quotes, except if the name is the whole text.
 ///
 /// ```
 /// # use htex_recording::ColumnMap;

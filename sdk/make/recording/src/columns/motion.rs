@@ -7,7 +7,8 @@ use crate::sums::Sums;
 /// position of the tracker would show as a step in the speed.
 const WINDOW_S: f64 = 0.05;
 
-/// Returns the speed of each sample in mm/s, from one or two coordinates in mm of equal length.
+/// Returns the speed at each sample, mm/s, computed from one or two coordinates of the position,
+/// mm. Both coordinates must have the same number of samples.
 ///
 /// The position is first averaged over 50 ms. The speed at a sample is the change of this average
 /// over the 50 ms around the sample, divided by the time. Near the ends of the recording, both

@@ -112,12 +112,12 @@ pub struct TextureSpectrum {
     /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
     /// Repeatability, decibels: the difference to expect between the spectra of two such
-    /// recordings. It is the RMS over nine bands of the difference between the spectra of odd and
+    /// recordings. This is the RMS over nine bands of the difference between the spectra of odd and
     /// even blocks of time, divided by √2.
     ///
-    /// For this, the read parts of the recordings are cut into blocks of 0.2 to 1 s, which share no
-    /// sample. A segment in the middle of a sweep is one block. `None` if there are fewer than four
-    /// blocks, or if half of the blocks are silent.
+    /// The read parts of the recordings are cut into blocks of 0.2 to 1 s, which share no sample. A
+    /// segment in the middle of a sweep is one block. `None` if there are fewer than four blocks,
+    /// or if half of the blocks are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
@@ -140,10 +140,10 @@ impl TextureSpectrum {
         self.segments > 0
     }
 
-    /// Averages the segment spectra of one texture at one condition, from one or more recordings.
+    /// Averages the segment spectra of one or more recordings of one texture at one condition.
     ///
     /// # Errors
-    /// When there are no segments, or the quantities or bands differ.
+    /// When there are no segments, or when the quantities or bands of the recordings differ.
     pub fn average(parts: &[SegmentSpectra], averaging: Averaging) -> Result<Self, AuthorError> {
         let first = parts.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
         if parts.iter().any(|part| part.quantity != first.quantity) {

@@ -48,13 +48,13 @@ pub struct Import<'a> {
     pub tool: &'a str,
 }
 
-/// An imported asset, with results of the import that its file does not store.
+/// An imported asset, with results of the import that the asset's file does not store.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ImportedAsset {
     pub asset: htex_format::Asset,
-    /// The bytes of the asset's file, if the imported file contains the asset and the given
-    /// metadata changes nothing.
+    /// The bytes of the asset's file. `None` if the imported file does not contain the asset, or if
+    /// the given metadata changes the asset.
     file: Option<Vec<u8>>,
     /// How much of the difference from the signal a finger can feel: one list for each
     /// representation, with one value for each condition. Empty if the import needs no fit.

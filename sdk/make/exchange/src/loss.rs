@@ -1,5 +1,5 @@
-//! Measures the loss of an export: the written file is read back, played through the profile, and
-//! compared with the asset's own samples.
+//! Measures the loss of an export. The written file is read back, the actuator's vibration is
+//! computed with the profile, and this vibration is compared with the asset's own samples.
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
@@ -18,12 +18,12 @@ use crate::profile::{Kind, Profile};
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Loss {
-    /// Difference between what the actuator plays from the file and the asset's own samples. For
-    /// the comparison, the actuator's acceleration is converted to the asset's unit in such a way
-    /// that equal values would feel the same.
+    /// Difference between the vibration that the actuator plays from the file and the asset's own
+    /// samples. For the comparison, the actuator's acceleration is converted to the asset's unit in
+    /// such a way that equal values would feel the same.
     #[serde(flatten)]
     pub difference: Difference,
-    /// Level of what the actuator plays, relative to the asset's level, decibels.
+    /// Level of the vibration that the actuator plays, relative to the asset's level, decibels.
     pub level_db: f64,
     /// Level of what the actuator plays, relative to the detection threshold of a sensitive finger,
     /// decibels. At 0 or less, nobody feels it. `None` if no actuator plays the file.

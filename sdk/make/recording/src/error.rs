@@ -125,7 +125,7 @@ pub enum Place {
     Line(usize),
     /// A row of numbers, counted from 1.
     Row(usize),
-    /// A byte, a channel, a data set or a cell.
+    /// The name of another place: a byte, a channel, a data set or a cell.
     Named(String),
 }
 

@@ -1,4 +1,4 @@
-//! The finger's motion from a tracker: a second file with its own sample rate.
+//! The finger's motion from a tracker. The motion is in a second file with its own sample rate.
 
 use htex_base::finding::Notice;
 

@@ -1,5 +1,5 @@
-//! Diagram of a chain of processing stages, drawn as one SVG element. It shows the running stages
-//! with their costs, and the omitted stages in grey.
+//! Diagram of a chain of processing stages, drawn as one SVG element. The diagram shows the running
+//! stages with their costs, and the omitted stages in grey.
 
 use crate::report::markup::Element;
 use crate::report::number::{brief, px};

@@ -1,8 +1,8 @@
 //! SVG plots, heat tables and self-contained HTML reports.
 //!
-//! This module converts data to text. It reads neither files nor the clock, so equal data gives
-//! equal bytes. It does no signal processing. Pages contain their own style sheet, use no scripts
-//! and load no external resources.
+//! This module converts data to text. The output depends only on the data, because this module
+//! reads neither files nor the clock. It does no signal processing. Pages contain their own style
+//! sheet, use no scripts and load no external resources.
 //!
 //! ```
 //! use htex_author::report::{Axis, Plot, Series};

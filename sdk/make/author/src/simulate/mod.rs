@@ -68,8 +68,8 @@ pub enum Motion {
 }
 
 /// A free motion: strokes of 0.6 to 1.6 s in both directions. Each stroke has its own mean speed
-/// and force. Within a stroke, both change slowly by up to 10 %. The logarithms of speed and force
-/// are evenly distributed over their ranges.
+/// and force. Within a stroke, the speed and the force change slowly by up to 10 %. The logarithms
+/// of speed and force are evenly distributed over their ranges.
 ///
 /// The finger is always on material that it has not touched before, and the strength of contact
 /// does not vary. The spectrum of a steady part is therefore a known function of speed and force:
@@ -122,7 +122,7 @@ pub struct SimulationOptions {
     /// The kind of motion. A free motion has its own ranges of speed and force, which replace
     /// `speed_mm_s` and `force_n`.
     pub motion: Motion,
-    /// How surface and hand differ from a rigid relief under a steady hand.
+    /// Departures of the surface and the hand from a rigid relief under a steady hand.
     pub departures: Departures,
 }
 
@@ -181,7 +181,7 @@ impl SimulationOptions {
         self
     }
 
-    /// Sets how surface and hand differ from a rigid relief under a steady hand.
+    /// Sets the departures of the surface and the hand from a rigid relief under a steady hand.
     #[must_use]
     pub fn with_departures(mut self, departures: Departures) -> Self {
         self.departures = departures;
@@ -349,8 +349,8 @@ impl Simulation {
         self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
     }
 
-    /// Converts the simulation to a recording. This recording equals the one that is read from the
-    /// CSV written by [`Self::write_csv`]. `source` is the file name.
+    /// Converts the simulation to a recording. Reading the CSV that [`Self::write_csv`] writes
+    /// gives an equal recording. `source` is the file name.
     ///
     /// # Errors
     /// None if the simulation comes from [`simulate`].

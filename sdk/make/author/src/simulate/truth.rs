@@ -2,9 +2,9 @@
 //!
 //! The relief is a stationary process along the path, with a known spectral density over spatial
 //! frequency. The speed converts spatial frequency to hertz. The force scales the density, and skin
-//! and rig filter it. A spectrum is computed with a periodic Hann window of 0.2 s. Its expected
-//! power at a multiple of 5 Hz is the integral of the filtered density multiplied by the window's
-//! power transfer.
+//! and rig filter it. A spectrum is computed with a periodic Hann window of 0.2 s. The expected
+//! power of this spectrum at a multiple of 5 Hz is the integral of the filtered density multiplied
+//! by the window's power transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -97,11 +97,11 @@ impl Truth {
     }
 
     /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons. A magnitude
-    /// is the root of the expected power in a segment of 0.2 s. It combines both lateral axes, and
-    /// includes the rig's response and the sensor's noise.
+    /// is the root of the expected power in a segment of 0.2 s. The magnitude combines both lateral
+    /// axes, and includes the rig's response and the sensor's noise.
     ///
     /// # Errors
-    /// When speed or force is out of the simulator's range.
+    /// When the speed or the force is out of the simulator's range.
     pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, AuthorError> {
         check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
         check_range("force_n", force_n, 0.01, 10.0)?;

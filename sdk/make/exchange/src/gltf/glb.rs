@@ -1,5 +1,5 @@
 //! Reads and writes GLB, the binary container of glTF 2.0 (specification, section 4.4). A container
-//! has a header, a chunk of JSON, and a chunk of bytes.
+//! consists of a header, a chunk with JSON, and a chunk with binary data.
 
 use crate::error::Fault;
 

@@ -1,5 +1,5 @@
-//! Reads and writes images: PNG files with one grey value for each pixel, and the distance between
-//! pixels.
+//! Reads and writes images: PNG files with one grey value for each pixel. A file can also state the
+//! distance between pixels.
 
 use std::io::Cursor;
 

@@ -147,7 +147,8 @@ impl RowMap {
         used
     }
 
-    /// Returns the assumptions that were made, such as assumed units, each as a full sentence.
+    /// Returns the assumptions that were made, such as assumed units. Each assumption is a full
+    /// sentence.
     #[must_use]
     pub fn warnings(&self) -> &[Notice] {
         &self.selection.warnings

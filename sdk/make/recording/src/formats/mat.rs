@@ -1,8 +1,8 @@
 //! Reader of MATLAB version 5 files (`save -v6` and `-v7`): numeric matrices, also inside structs.
 //!
 //! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements. Each
-//! element consists of a tag, which has the type and the size, and of data. A compressed element is
-//! a zlib stream that contains one element. Streams are decompressed piece by piece, so that a
+//! element has a tag, which contains the type and the size, and data. A compressed element is a
+//! zlib stream that contains one element. Streams are decompressed piece by piece, so that a
 //! decompressed element is never in memory as a whole. The file is first read for the names of its
 //! variables. The variables that are used are then read a second time.
 //!

@@ -1,4 +1,4 @@
-//! Parser of decimal numbers, correctly rounded.
+//! Parses decimal numbers, and rounds them correctly.
 
 /// Powers of ten that `f64` represents exactly, one for each possible number of decimals in a plain
 /// number.

@@ -185,7 +185,8 @@ impl<'a> Session<'a> {
         }))
     }
 
-    /// Records a rating for the current step. `Presentation` says how the trial was played.
+    /// Records a rating for the current step, together with a description of how its trial was
+    /// played.
     ///
     /// # Errors
     /// [`LabError::File`], and [`LabError::Line`] if the current step does not accept this

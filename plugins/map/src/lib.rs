@@ -57,8 +57,8 @@ htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 /// and within the band.
 ///
 /// # Errors
-/// If the number of grey values is not a multiple of the width, or if the map has no energy in the
-/// band.
+/// Returns an error if the number of grey values is not a multiple of the width, or if the map has
+/// no energy in the band.
 pub fn rms(
     width: usize,
     pitch_mm: f64,

@@ -32,7 +32,8 @@ impl Lines {
     /// Returns the lines of a map, and checks the RMS that the map states.
     ///
     /// # Errors
-    /// The errors of [`Self::new`]. Also if the stated RMS differs from the RMS of the grey values.
+    /// Returns the same errors as [`Self::new`]. Also returns an error if the stated RMS differs
+    /// from the RMS of the grey values.
     pub(crate) fn stated(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let lines = Self::new(map, band)?;
         if (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
@@ -50,7 +51,7 @@ impl Lines {
     /// Returns the lines of a map.
     ///
     /// # Errors
-    /// If no line in the band has power.
+    /// Returns an error if no line in the band has power.
     pub(crate) fn new(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let fundamental_hz = map.fundamental_hz();
         let most = map.width / 2;

@@ -30,7 +30,8 @@ impl<'a> Map<'a> {
     /// Checks that the grey values form whole rows.
     ///
     /// # Errors
-    /// If the number of grey values is not a multiple of the width, or if there are too many rows.
+    /// Returns an error if the number of grey values is not a multiple of the width, or if there
+    /// are too many rows.
     pub(crate) fn checked(self) -> Result<Self, Error> {
         let rows = self.grey.len() / self.width.max(1);
         if self.width == 0 || rows == 0 || rows > MOST_SIDE || rows * self.width != self.grey.len()

@@ -38,7 +38,7 @@ impl Surface {
     /// pass. Does not allocate.
     ///
     /// # Errors
-    /// If the stated RMS of the map is 0.
+    /// Returns an error if the stated RMS of the map is 0.
     pub(crate) fn set_map(&mut self, map: &Map<'_>, passed: f64) -> Result<(), Error> {
         if map.rms <= 0.0 {
             return Err(Error::parameters("`rms` is 0, and a map is felt by its differences"));

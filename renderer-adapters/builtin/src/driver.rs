@@ -120,7 +120,7 @@ impl Claim {
     /// its name in messages.
     ///
     /// # Errors
-    /// When another device has reserved the same hardware.
+    /// Returns an error if another device has reserved the same hardware.
     pub(crate) fn reserve(key: [&str; 3], name: &str) -> Result<Self, DeviceError> {
         let key = key.map(str::to_owned);
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);

@@ -255,14 +255,14 @@ pub trait Adapter: Send + Sync {
     /// Lists the devices that are connected now. An empty list is not an error. `[any thread]`
     ///
     /// # Errors
-    /// When a driver is missing: the message says what to install.
+    /// Returns an error if a driver is missing: the message says what to install.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
     /// Reports what an output with these settings can do, without opening it. `[any thread]`
     ///
     /// # Errors
-    /// When a setting is not usable, or the device is not connected. [`DeviceError::Direction`] for
-    /// an input.
+    /// Returns an error if a setting is not usable, or the device is not connected.
+    /// [`DeviceError::Direction`] for an input.
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
         let _ = settings;
         Err(is_not(self.descriptor(), Direction::Output))
@@ -271,7 +271,8 @@ pub trait Adapter: Send + Sync {
     /// Opens an output. It is silent and at zero until the first write. `[any thread]`
     ///
     /// # Errors
-    /// The errors of [`Self::capabilities`], and when the device does not support the rate.
+    /// Returns the same errors as [`Self::capabilities`]. Also returns an error if the device does
+    /// not support the rate.
     fn open_output(
         &self,
         settings: &Settings,
@@ -284,8 +285,8 @@ pub trait Adapter: Send + Sync {
     /// Opens an input. It does not sample before [`Input::start`]. `[any thread]`
     ///
     /// # Errors
-    /// When a setting is not usable, or the device is not connected. [`DeviceError::Direction`] for
-    /// an output.
+    /// Returns an error if a setting is not usable, or the device is not connected.
+    /// [`DeviceError::Direction`] for an output.
     fn open_input(&self, settings: &Settings) -> Result<Box<dyn Input>, DeviceError> {
         let _ = settings;
         Err(is_not(self.descriptor(), Direction::Input))
@@ -322,8 +323,8 @@ pub trait Output: Send {
     /// including none. The first samples start the output. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// When a sample is over the limit or not a number, when the output ran out of samples, or when
-    /// the device is gone. After an error the output is at zero and stays there.
+    /// Returns an error if a sample is over the limit or not a number, if the output ran out of
+    /// samples, or if the device is gone. After an error the output is at zero and stays there.
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError>;
 
     /// Returns the counts since the device was opened. Works after an error.
@@ -334,7 +335,7 @@ pub trait Output: Send {
     /// name). Nothing can be written afterwards. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// When one of these steps failed. The output is at zero even then.
+    /// Returns an error if one of these steps failed. The output is at zero even then.
     fn finish(&mut self) -> Result<(), DeviceError>;
 }
 
@@ -353,7 +354,7 @@ pub trait Input: Send {
     /// Starts sampling. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// When the device is in use or gone, or was finished before.
+    /// Returns an error if the device is in use or gone, or was finished before.
     fn start(&mut self) -> Result<(), DeviceError>;
 
     /// Writes the available frames to `samples`, interleaved: one sample of each channel in turn.
@@ -361,16 +362,16 @@ pub trait Input: Send {
     /// number of channels. No frame is lost between two calls. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// [`DeviceError::Overrun`] when frames were lost because they were read too late. Also when
-    /// the device is gone, was not started, or has been finished. After an error the input delivers
-    /// nothing more.
+    /// [`DeviceError::Overrun`] if frames were lost because they were read too late. Also returns
+    /// an error if the device is gone, was not started, or has been finished. After an error the
+    /// input delivers nothing more.
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError>;
 
     /// Stops sampling for good. The input may already have stopped. `[one thread at a time; may
     /// wait]`
     ///
     /// # Errors
-    /// When stopping failed. The input delivers nothing more even then.
+    /// Returns an error if stopping failed. The input delivers nothing more even then.
     fn finish(&mut self) -> Result<(), DeviceError>;
 }
 

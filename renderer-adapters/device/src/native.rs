@@ -62,8 +62,8 @@ impl NativeAdapter {
     /// Loads a native library, which runs with all the rights of this program.
     ///
     /// # Errors
-    /// When the file is not a library for this machine, does not follow this ABI, or has an invalid
-    /// descriptor.
+    /// Returns an error if the file is not a library for this machine, does not follow this ABI, or
+    /// has an invalid descriptor.
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
         let error = |fault, what| DeviceError::Library { library: name.clone(), fault, what };
@@ -85,7 +85,7 @@ impl NativeAdapter {
     /// messages.
     ///
     /// # Errors
-    /// The errors of [`Self::load`].
+    /// Returns the same errors as [`Self::load`].
     pub fn from_table(name: &str, table: &'static DeviceTable) -> Result<Self, DeviceError> {
         // SAFETY: a live table.
         unsafe { Self::from_pointer(name, table) }
@@ -143,7 +143,7 @@ impl NativeAdapter {
     /// Whether the library has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
     ///
     /// # Errors
-    /// When the result is neither 0 nor 1.
+    /// Returns an error if the result is neither 0 nor 1.
     pub fn has_extension(&self, id: &str) -> Result<bool, DeviceError> {
         let extension = function!(self.library, extension);
         // SAFETY: a live text.
@@ -157,7 +157,7 @@ impl NativeAdapter {
     /// For checkers: [`Adapter::capabilities`] with lines of settings, which may be invalid.
     ///
     /// # Errors
-    /// The errors of [`Adapter::capabilities`].
+    /// Returns the same errors as [`Adapter::capabilities`].
     pub fn capabilities_of(&self, lines: &str) -> Result<Capabilities, DeviceError> {
         self.check_direction(Direction::Output)?;
         let function = function!(self.library, capabilities);
@@ -172,7 +172,7 @@ impl NativeAdapter {
     /// for checkers.
     ///
     /// # Errors
-    /// The errors of [`Adapter::open_output`].
+    /// Returns the same errors as [`Adapter::open_output`].
     pub fn open_native_output(
         &self,
         settings: &Settings,
@@ -202,7 +202,7 @@ impl NativeAdapter {
     /// checkers.
     ///
     /// # Errors
-    /// The errors of [`Adapter::open_input`].
+    /// Returns the same errors as [`Adapter::open_input`].
     pub fn open_native_input(&self, settings: &Settings) -> Result<NativeInput, DeviceError> {
         self.check_direction(Direction::Input)?;
         let opened = self.open(&self.lines(settings), 0.0, 0);
@@ -442,7 +442,8 @@ impl NativeOutput {
     /// Returns the status as [`Output::status`] does, but reports an invalid result as an error.
     ///
     /// # Errors
-    /// When the device returns too few numbers, or a number that is negative or not finite.
+    /// Returns an error if the device returns too few numbers, or a number that is negative or not
+    /// finite.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
         let library = &self.opened.library;
         let status = function!(library, status);
@@ -557,7 +558,7 @@ impl NativeInput {
     /// For checkers: reads the rate and the channels again, which must not change.
     ///
     /// # Errors
-    /// When the library returns no valid stream.
+    /// Returns an error if the library returns no valid stream.
     pub fn stream_again(&self) -> Result<InputStream, DeviceError> {
         self.opened.stream()
     }

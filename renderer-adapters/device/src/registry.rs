@@ -68,7 +68,7 @@ impl AdapterEntry {
     /// Loads the adapter of a native library, which runs with all the rights of this program.
     ///
     /// # Errors
-    /// When the file is not a library of this ABI.
+    /// Returns an error if the file is not a library of this ABI.
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
         let adapter = Arc::new(NativeAdapter::load(path)?);
         Ok(Self { adapter, origin: Origin::Library(path.to_owned()) })
@@ -146,7 +146,8 @@ impl Devices {
     /// Searches for adapters, and adds those linked into the program at the end.
     ///
     /// # Errors
-    /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
+    /// Returns an error if one of the search's `files` cannot be loaded, or one of its `dirs`
+    /// cannot be read.
     pub fn search(builtin: Vec<Arc<dyn Adapter>>, search: &Search) -> Result<Self, DeviceError> {
         let mut devices = Self::default();
         for path in &search.files {
@@ -199,7 +200,8 @@ impl Devices {
     /// setting that [`Descriptor::target`] names.
     ///
     /// # Errors
-    /// When the name is not known, a setting is not usable, or the input cannot be opened.
+    /// Returns an error if the name is not known, a setting is not usable, or the input cannot be
+    /// opened.
     pub fn open_input(
         &self,
         text: &str,

@@ -44,7 +44,8 @@ impl Settings {
     /// the smaller value applies.
     ///
     /// # Errors
-    /// When the profile or a setting is unknown, a setting is missing, or a value is not allowed.
+    /// Returns an error if the profile or a setting is unknown, a setting is missing, or a value is
+    /// not allowed.
     pub fn resolve(
         descriptor: &Descriptor,
         profile: Option<&str>,
@@ -58,7 +59,7 @@ impl Settings {
     /// returns the scene's settings that take no effect.
     ///
     /// # Errors
-    /// The errors of [`Self::resolve`].
+    /// Returns the same errors as [`Self::resolve`].
     pub fn settle(
         descriptor: &Descriptor,
         requests: &SettingRequests<'_>,
@@ -139,7 +140,8 @@ impl Settings {
     /// Reads lines written by [`Self::to_lines`]. A setting without a line gets its default.
     ///
     /// # Errors
-    /// When a line is invalid or occurs twice, and the errors of [`Self::resolve`].
+    /// Returns an error if a line is invalid or occurs twice. Also returns the errors of
+    /// [`Self::resolve`].
     pub fn from_lines(descriptor: &Descriptor, lines: &str) -> Result<Self, DeviceError> {
         let mut given = BTreeMap::new();
         for line in lines.lines() {

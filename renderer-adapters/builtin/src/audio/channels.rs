@@ -9,7 +9,7 @@ use crate::audio::sound::{Channels, Sound};
 /// Lists the connected outputs. The setting `device` selects one of them.
 ///
 /// # Errors
-/// When the system's sound service does not respond.
+/// Returns an error if the system's sound service does not respond.
 pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
     card::endpoints(Direction::Output)
 }
@@ -17,7 +17,7 @@ pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
 /// Returns the capabilities of an output with this number of channels.
 ///
 /// # Errors
-/// When the output is not connected, or does not support this number of channels.
+/// Returns an error if the output is not connected, or does not support this number of channels.
 pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilities, DeviceError> {
     Card::find(device, Direction::Output)?.with_channels(channels)?.capabilities()
 }
@@ -26,7 +26,8 @@ pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilit
 /// factor.
 ///
 /// # Errors
-/// The errors of [`capabilities_of_channels`], and when the output does not support the rate.
+/// Returns the same errors as [`capabilities_of_channels`]. Also returns an error if the output
+/// does not support the rate.
 pub fn open_channels(
     device: &str,
     factors: &[f32],

@@ -12,7 +12,7 @@ const MOST: usize = 32;
 /// of each channel, by which the channel multiplies each sample.
 ///
 /// # Errors
-/// When an item is invalid, or no channel plays.
+/// Returns an error if an item is invalid, or no channel plays.
 pub(crate) fn factors(list: &str) -> Result<Vec<f32>, DeviceError> {
     let factors: Vec<f32> = list.split(',').map(factor).collect::<Result<_, _>>()?;
     if factors.len() > MOST {

@@ -29,7 +29,7 @@ impl To {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When a setting would have no effect in combination with the other settings.
+    /// Returns an error if a setting would have no effect in combination with the other settings.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let to = settings.text("to");
         let (card, path) = (settings.text("device"), settings.text("path"));

@@ -172,8 +172,8 @@ impl Shared {
     /// Waits until the session is free and returns it.
     ///
     /// # Errors
-    /// When another thread has held the session for longer than [`HANG`]. The error says whether
-    /// the output could be set to zero.
+    /// Returns an error if another thread has held the session for longer than [`HANG`]. The error
+    /// says whether the output could be set to zero.
     pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, Hung> {
         let mut turn = self.turn.load(Ordering::SeqCst);
         let mut since = Instant::now();

@@ -55,7 +55,7 @@ impl Adapter for FileAdapter {
 /// contains each sample multiplied by its factor.
 ///
 /// # Errors
-/// When a WAV file cannot have this rate, or the file cannot be created.
+/// Returns an error if a WAV file cannot have this rate, or the file cannot be created.
 pub fn open_channels(
     path: std::path::PathBuf,
     factors: &[f32],

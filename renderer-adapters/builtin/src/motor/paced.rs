@@ -29,7 +29,7 @@ impl PacedOutput {
     /// Opens an output called `name` for a motor that is at rest.
     ///
     /// # Errors
-    /// When the device does not support the rate, or no thread can be started.
+    /// Returns an error if the device does not support the rate, or no thread can be started.
     pub fn open(
         name: &str,
         motor: Box<dyn Motor>,

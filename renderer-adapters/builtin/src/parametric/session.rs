@@ -224,7 +224,7 @@ impl Session {
     /// Polls the runtime's events and updates the bindings.
     ///
     /// # Errors
-    /// When the session does not have the focus.
+    /// Returns an error if the session does not have the focus.
     pub(crate) fn follow(&self) -> Result<(), String> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while let Some(now) = self.next_state()? {

@@ -69,7 +69,7 @@ impl PlayRequest {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When a setting would have no effect in combination with the other settings.
+    /// Returns an error if a setting would have no effect in combination with the other settings.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let form = match settings.text("form") {
             "pcm" => Form::Pcm,

@@ -64,7 +64,8 @@ impl GuardedOutput {
     /// program's last arguments are `--device-file` and the library's file.
     ///
     /// # Errors
-    /// When the program cannot be started or does not answer, or when it cannot open the device.
+    /// Returns an error if the program cannot be started or does not answer, or if the program
+    /// cannot open the device.
     pub fn open(
         known: &AdapterEntry,
         settings: &Settings,

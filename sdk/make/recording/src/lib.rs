@@ -98,7 +98,7 @@ pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, R
 /// not opened.
 ///
 /// # Errors
-/// The errors of [`read_recording`].
+/// Returns the same errors as [`read_recording`].
 pub fn recording_from_bytes(
     path: &Path,
     bytes: &[u8],

@@ -66,8 +66,8 @@ pub struct PreviewColumn {
 /// ```
 ///
 /// # Errors
-/// When the file has no columns of numbers at all, or an option does not apply. Columns without a
-/// clear role are not an error: they are reported in [`Preview::problem`].
+/// Returns an error if the file has no columns of numbers at all, or an option does not apply.
+/// Columns without a clear role are not an error: they are reported in [`Preview::problem`].
 pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
     let previewed = || {
         options.check()?;

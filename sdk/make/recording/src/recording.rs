@@ -93,7 +93,7 @@ impl Recording {
     /// Creates a recording of a lateral force with one or two axes, in newtons.
     ///
     /// # Errors
-    /// The errors of [`Self::from_axes`].
+    /// Returns the same errors as [`Self::from_axes`].
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -114,9 +114,9 @@ impl Recording {
     /// unit.
     ///
     /// # Errors
-    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`]. When there are no axes, or more
-    /// axes than the quantity can have. When the axes have fewer than two samples, differ in
-    /// length, or contain NaN, infinity or a magnitude above 1e12.
+    /// Returns an error if the rate is not above 0 and at most [`MAX_RATE_HZ`], or if there are no
+    /// axes or more axes than the quantity can have. Also returns an error if the axes have fewer
+    /// than two samples, differ in length, or contain NaN, infinity or a magnitude above 1e12.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -163,8 +163,8 @@ impl Recording {
     /// is positive whatever the sign of the sensor.
     ///
     /// # Errors
-    /// When the signal differs in length from the axes, or a value is not finite or exceeds 1e12 in
-    /// magnitude.
+    /// Returns an error if the signal differs in length from the axes, or a value is not finite or
+    /// exceeds 1e12 in magnitude.
     pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
         check("normal force", &normal_n, self.samples())?;
         // The sum decides and not the first sample, because noise may make some samples negative.
@@ -178,8 +178,8 @@ impl Recording {
     /// Adds the sliding speed of each sample, mm/s.
     ///
     /// # Errors
-    /// When the signal differs in length from the axes, or a value is not finite or exceeds 1e12 in
-    /// magnitude.
+    /// Returns an error if the signal differs in length from the axes, or a value is not finite or
+    /// exceeds 1e12 in magnitude.
     pub fn with_speed(mut self, speed_mm_s: Vec<f64>) -> Result<Self, RecordingError> {
         check("speed", &speed_mm_s, self.samples())?;
         self.speed_mm_s = Some(speed_mm_s);
@@ -191,7 +191,8 @@ impl Recording {
     /// findings about the time column.
     ///
     /// # Errors
-    /// When a time is not finite, or there are fewer than two samples between the times.
+    /// Returns an error if a time is not finite, or there are fewer than two samples between the
+    /// times.
     ///
     /// ```
     /// # use htex_recording::Recording;

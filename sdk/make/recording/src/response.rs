@@ -81,7 +81,7 @@ impl SetupResponse {
     /// that reads back to the same bits.
     ///
     /// # Errors
-    /// When the writer fails.
+    /// Returns an error if the writer fails.
     pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
         writeln!(out, "frequency_hz,magnitude,phase_rad")?;
         let numbers = self.magnitude.iter().zip(&self.phase_rad);
@@ -132,10 +132,10 @@ impl fmt::Display for RaisedRanges {
 /// `phase_rad` (default zero).
 ///
 /// # Errors
-/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also when a frequency is
-/// negative or does not increase, a magnitude is negative, or a number is out of range: a frequency
-/// or phase above 1e9, or a magnitude that is neither 0 nor from 1e-9 to 1e9. The error names the
-/// line.
+/// Returns the same errors as [`read_recording`](crate::read_recording) for a CSV. Also returns an
+/// error if a number is out of range. Frequencies must increase from row to row and be from 0 to
+/// 1e9 Hz, magnitudes must be 0 or from 1e-9 to 1e9, and the absolute value of a phase must be at
+/// most 1e9 radians. The error names the line.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
     let read = InputFile::file(path).and_then(response);
     read.map_err(|fault| fault.in_file(&file_name(path)))
@@ -144,7 +144,7 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// Reads a setup response from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// The errors of [`read_response`].
+/// Returns the same errors as [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(response);
     read.map_err(|fault| fault.in_file(file))

@@ -38,8 +38,9 @@ pub struct TraceColumns {
 /// `speed_mm_s`. Other names and units are recognised as in a recording (`time [ms]`, `fz_n`).
 ///
 /// # Errors
-/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also when a time does not
-/// increase by at least a nanosecond, or a number is beyond 1e9; the error names the line.
+/// Returns the same errors as [`read_recording`](crate::read_recording) for a CSV. Also returns an
+/// error if a time does not increase by at least a nanosecond, or if the magnitude of a number
+/// exceeds 1e9. The error names the line.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
     let read = InputFile::file(path).and_then(trace);
     read.map_err(|fault| fault.in_file(&file_name(path)))
@@ -48,7 +49,7 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// Reads a trace from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// The errors of [`read_trace`].
+/// Returns the same errors as [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(trace);
     read.map_err(|fault| fault.in_file(file))
@@ -71,7 +72,7 @@ pub struct StrokeColumns {
 /// without a speed is read as a trace, and the speed is computed from its positions.
 ///
 /// # Errors
-/// The errors of [`read_trace`].
+/// Returns the same errors as [`read_trace`].
 pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::file(path).and_then(stroke);
     read.map_err(|fault| fault.in_file(&file_name(path)))
@@ -80,7 +81,7 @@ pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
 /// Reads a stroke from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// The errors of [`read_stroke`].
+/// Returns the same errors as [`read_stroke`].
 pub fn stroke_from_bytes(file: &str, bytes: &[u8]) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(stroke);
     read.map_err(|fault| fault.in_file(file))

@@ -47,7 +47,7 @@ impl Conditions {
     /// Collects the conditions of a representation, with its stored triangles.
     ///
     /// # Errors
-    /// When the stored triangles are invalid: [`htex_format::check_triangles`].
+    /// Returns an error if the stored triangles are invalid: [`htex_format::check_triangles`].
     pub(crate) fn for_representation(
         representation: &Representation,
         conditions: &[Condition],

@@ -40,7 +40,7 @@ pub struct Envelope {
 /// Makes a voice's analyser with `count` bands, or returns `None` if `count` is 0.
 ///
 /// # Errors
-/// When there are more than [`MOST_BANDS`].
+/// Returns an error if there are more than [`MOST_BANDS`].
 pub(crate) fn analyser(count: usize, band: Band, rate_hz: f64) -> Result<Option<Analyser>, Error> {
     match count {
         0 => Ok(None),
@@ -57,7 +57,7 @@ pub(crate) fn analyser(count: usize, band: Band, rate_hz: f64) -> Result<Option<
 /// bands or 0.
 ///
 /// # Errors
-/// When `bands` has another length. The analyser then keeps its state.
+/// Returns an error if `bands` has another length. The analyser then keeps its state.
 pub(crate) fn read(analyser: Option<&mut Analyser>, bands: &mut [f64]) -> Result<Envelope, Error> {
     let there = analyser.as_ref().map_or(0, |analyser| analyser.bands());
     let given = bands.len();

@@ -144,7 +144,7 @@ impl Mesh {
     /// it does the same as [`Self::new`].
     ///
     /// # Errors
-    /// When the triangles are invalid: [`htex_format::check_triangles`].
+    /// Returns an error if the triangles are invalid: [`htex_format::check_triangles`].
     pub fn with_triangles(
         conditions: &[[f64; 2]],
         triangles: &[Triangle],

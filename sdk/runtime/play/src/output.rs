@@ -22,7 +22,7 @@ impl Output {
     /// samples within `limit`.
     ///
     /// # Errors
-    /// When the gain is negative or not finite, or the limit is not above 0.
+    /// Returns an error if the gain is negative or not finite, or the limit is not above 0.
     pub(crate) fn new(
         gain: f64,
         limit: Option<f64>,
@@ -37,7 +37,7 @@ impl Output {
     /// Changes the gain: gradually, or at once if the voice is silent.
     ///
     /// # Errors
-    /// When `gain` is negative or not finite.
+    /// Returns an error if `gain` is negative or not finite.
     pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
         let gain = checked(gain)?;
         self.target = gain;

@@ -22,7 +22,7 @@ use crate::Error;
 /// ```
 ///
 /// # Errors
-/// When there is no candidate.
+/// Returns an error if there is no candidate.
 pub fn model_of<'a>(
     registry: &'a Registry,
     representation: &Representation,
@@ -66,8 +66,8 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// ```
 ///
 /// # Errors
-/// When the fields differ from the model's: [`Error::ModelOlder`] if a newer version fitted them,
-/// otherwise [`Error::Fields`].
+/// Returns an error if the fields differ from the model's: [`Error::ModelOlder`] if a newer version
+/// fitted them, otherwise [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
     loaded: &LoadedModel,

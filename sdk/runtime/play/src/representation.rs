@@ -61,7 +61,7 @@ impl<'a> Representation<'a> {
     /// Returns the model of the representation, and loads it if necessary.
     ///
     /// # Errors
-    /// When the model is missing or incompatible.
+    /// Returns an error if the model is missing or incompatible.
     pub fn model(&self) -> Result<LoadedModel, Error> {
         self.texture.model(self.index)
     }
@@ -69,7 +69,7 @@ impl<'a> Representation<'a> {
     /// Returns the conditions at which the representation was recorded. Loads no model.
     ///
     /// # Errors
-    /// When the stored triangles are invalid.
+    /// Returns an error if the stored triangles are invalid.
     pub fn conditions(&self) -> Result<Conditions, Error> {
         let manifest = self.texture.manifest();
         Conditions::for_representation(self.data(), &manifest.conditions, manifest.law())
@@ -79,8 +79,9 @@ impl<'a> Representation<'a> {
     /// Makes a voice, which plays the representation.
     ///
     /// # Errors
-    /// When the model is missing or incompatible or refuses the parameters, when the sample rate is
-    /// below twice the highest frequency of the texture, or when another option is out of range.
+    /// Returns an error if the model is missing or incompatible, or if it refuses the parameters.
+    /// Also returns an error if the sample rate is below twice the highest frequency of the
+    /// texture, or if another option is out of range.
     pub fn voice(&self, options: &VoiceOptions) -> Result<Voice, Error> {
         self.check_rate(options.rate_hz)?;
         let ceiling = options.ceiling;
@@ -142,7 +143,7 @@ impl<'a> Representation<'a> {
     /// chooses the source's sample rate for a player that runs at the rate in the options.
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn source(&self, options: &VoiceOptions) -> Result<SampleSource, Error> {
         let motion = options.motion.unwrap_or_else(|| self.start());
         let model = self.model()?;
@@ -159,7 +160,7 @@ impl<'a> Representation<'a> {
     /// magnitude `m(f / r)`.
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn magnitude(
         &self,
         motion: Option<Motion>,
@@ -179,7 +180,7 @@ impl<'a> Representation<'a> {
     /// scaling law applies. Where the finger does not slide, the level is 0.
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn level_rms(&self, motion: Option<Motion>) -> Result<f64, Error> {
         let Some(scaling) = self.scaling(motion)? else {
             return Ok(0.0);
@@ -207,7 +208,7 @@ impl<'a> Representation<'a> {
     /// returns magnitudes where the finger does not slide.
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn recorded_magnitude(
         &self,
         motion: Option<Motion>,
@@ -223,7 +224,7 @@ impl<'a> Representation<'a> {
     /// condition.
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn parameters(&self, motion: Option<Motion>) -> Result<(Vec<f64>, f64), Error> {
         let motion = motion.unwrap_or_else(|| self.start()).checked()?;
         let model = self.model()?;
@@ -243,7 +244,7 @@ impl<'a> Representation<'a> {
     /// ```
     ///
     /// # Errors
-    /// The errors of [`Self::voice`].
+    /// Returns the same errors as [`Self::voice`].
     pub fn named_parameters(
         &self,
         motion: Option<Motion>,

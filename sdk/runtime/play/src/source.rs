@@ -146,8 +146,8 @@ impl SampleSource {
     /// the model ABI.
     ///
     /// # Errors
-    /// When a number is not finite, or the model refuses the motion. The source then continues
-    /// unchanged.
+    /// Returns an error if a number is not finite, or the model refuses the motion. The source then
+    /// continues unchanged.
     pub fn follow(&mut self, motion: Motion, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
@@ -179,8 +179,8 @@ impl SampleSource {
     /// allocate, lock or do I/O if the model keeps to the ABI, as this project's models do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate. The source
-    /// then continues unchanged.
+    /// Returns an error if a value is out of range (see [`Motion`]), or the model cannot
+    /// interpolate. The source then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
         let motion = motion.checked()?;
         if self.motion.has_conditions_of(&motion) || self.recorded.parameters.len() < 2 {
@@ -239,7 +239,7 @@ impl SampleSource {
     /// Fills `out` with the next samples, which have unit RMS. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// When the model fails. `out` is then filled with zeros.
+    /// Returns an error if the model fails. `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         self.frames += out.len() as u64;
         Ok(self.voice.render(out)?)

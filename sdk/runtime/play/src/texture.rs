@@ -33,7 +33,7 @@ impl Texture {
     /// Opens a file. The embedded and the built-in models can play it.
     ///
     /// # Errors
-    /// When the file cannot be read, or is not a valid asset.
+    /// Returns an error if the file cannot be read, or is not a valid asset.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         Ok(Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded())
     }
@@ -41,7 +41,7 @@ impl Texture {
     /// Opens an asset in memory. The embedded and the built-in models can play it.
     ///
     /// # Errors
-    /// When the bytes are not a valid asset.
+    /// Returns an error if the bytes are not a valid asset.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
@@ -55,8 +55,8 @@ impl Texture {
     /// ```
     ///
     /// # Errors
-    /// When the library has no texture with this name, cannot be read, or stores an invalid asset
-    /// for it.
+    /// Returns an error if the library has no texture with this name, cannot be read, or stores an
+    /// invalid asset for it.
     #[cfg(feature = "library")]
     pub fn from_library<S: htex_format::library::LibrarySource>(
         library: &htex_format::library::Library<S>,
@@ -96,8 +96,8 @@ impl Texture {
     /// Loads the embedded model with this id.
     ///
     /// # Errors
-    /// When the asset embeds no model with this id, when the model cannot be loaded, or when its id
-    /// or version differs from the declared one.
+    /// Returns an error if the asset embeds no model with this id, if the model cannot be loaded,
+    /// or if the model's id or version differs from the declared one.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -159,7 +159,7 @@ impl Texture {
     /// ```
     ///
     /// # Errors
-    /// When there is no such representation.
+    /// Returns an error if there is no such representation.
     pub fn representation<'a>(
         &self,
         model: impl Into<Option<&'a str>>,
@@ -181,7 +181,7 @@ impl Texture {
     /// [`Self::representation`].
     ///
     /// # Errors
-    /// The errors of [`Representation::voice`].
+    /// Returns the same errors as [`Representation::voice`].
     pub fn voice(&self, options: &VoiceOptions) -> Result<Voice, Error> {
         self.representation(None)?.voice(options)
     }
@@ -189,7 +189,7 @@ impl Texture {
     /// Returns the magnitudes of the best representation at a motion.
     ///
     /// # Errors
-    /// The errors of [`Representation::magnitude`].
+    /// Returns the same errors as [`Representation::magnitude`].
     pub fn magnitude(
         &self,
         motion: Option<Motion>,
@@ -201,7 +201,7 @@ impl Texture {
     /// Returns the level of the best representation at a motion.
     ///
     /// # Errors
-    /// The errors of [`Representation::level_rms`].
+    /// Returns the same errors as [`Representation::level_rms`].
     pub fn level_rms(&self, motion: Option<Motion>) -> Result<f64, Error> {
         self.representation(None)?.level_rms(motion)
     }

@@ -135,8 +135,9 @@ impl Voice {
     /// keeps to the ABI, as this project's models do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]); the voice then continues as after a failed
-    /// reading. When the model cannot interpolate; the voice then continues unchanged.
+    /// Returns an error if a value is out of range (see [`Motion`]); the voice then continues as
+    /// after a failed reading. Also returns an error if the model cannot interpolate; the voice
+    /// then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let checked = motion.checked();
         if checked.is_err() || !motion.is_plausible() {
@@ -204,7 +205,7 @@ impl Voice {
     /// gradual change counts as finished. If the voice is silent, all magnitudes are 0.
     ///
     /// # Errors
-    /// When the model refuses the parameters.
+    /// Returns an error if the model refuses the parameters.
     pub fn magnitude(&self, frequency_hz: &[f64]) -> Result<Vec<f64>, Error> {
         if self.asked.is_some_and(|motion| !self.follow.is_felt(motion)) {
             return Ok(vec![0.0; frequency_hz.len()]);
@@ -222,7 +223,7 @@ impl Voice {
     /// Sets the gain, which changes gradually (10 ms). Does not allocate.
     ///
     /// # Errors
-    /// When the gain is negative or not finite. The gain then keeps its old value.
+    /// Returns an error if the gain is negative or not finite. The gain then keeps its old value.
     pub fn set_gain(&mut self, gain: f64) -> Result<(), Error> {
         self.output.set_gain(gain, self.follow.rests())
     }
@@ -238,7 +239,7 @@ impl Voice {
     /// pauses. When the finger slides again, the noise continues where it stopped.
     ///
     /// # Errors
-    /// When the model fails. The samples that it did not render are then zero.
+    /// Returns an error if the model fails. The samples that it did not render are then zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let sounding = self.follow.sounding(out.len(), self.frames);
         let (sounding, resting) = out.split_at_mut(sounding);
@@ -301,7 +302,8 @@ impl Voice {
     /// not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// The errors of [`Self::render`]. Also when `gain` is not finite; `out` is then unchanged.
+    /// Returns the same errors as [`Self::render`]. Also returns an error if `gain` is not finite;
+    /// `out` is then unchanged.
     pub fn render_add(&mut self, out: &mut [f32], gain: f32) -> Result<(), Error> {
         if !gain.is_finite() {
             return Err(Error::OutOfRange {
@@ -345,7 +347,7 @@ impl Voice {
     /// ```
     ///
     /// # Errors
-    /// When the voice has no bands, or `bands` has another length.
+    /// Returns an error if the voice has no bands, or `bands` has another length.
     pub fn envelope(&mut self, bands: &mut [f64]) -> Result<Envelope, Error> {
         envelope::read(self.analyser.as_mut(), bands)
     }

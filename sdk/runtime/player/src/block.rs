@@ -138,7 +138,8 @@ impl<'a> Block<'a> {
     /// larger area of flash memory.
     ///
     /// # Errors
-    /// If the bytes are not a complete block of version 1 with all numbers in range.
+    /// Returns an error if the bytes are not a complete block of version 1 with all numbers in
+    /// range.
     pub fn open(bytes: &'a [u8]) -> Result<Self, OpenError> {
         let header = match bytes.split_first_chunk::<HEADER>() {
             Some((header, rest)) if rest.len() >= CHECKSUM => header,

@@ -64,7 +64,7 @@ impl Costs {
     /// Stores the costs for later plans.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// Returns an error if the file cannot be written.
     #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;

@@ -112,7 +112,7 @@ impl Gains {
     /// Returns the hash of an asset or scene, as legacy entries store it.
     ///
     /// # Errors
-    /// If the file cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn hash_of(file: &Path) -> io::Result<String> {
         Ok(blake3::hash(&fs::read(file)?).to_hex().to_string())
     }
@@ -127,8 +127,8 @@ impl Gains {
     /// Reads a gains file. If the file is missing, there are no gains.
     ///
     /// # Errors
-    /// If the file cannot be read, is too large, or is not a gains file. Also if it has unknown
-    /// keys, which would be lost when the file is written again.
+    /// Returns an error if the file cannot be read, is too large, or is not a gains file. Also
+    /// returns an error if it has unknown keys, which would be lost when the file is written again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -145,8 +145,8 @@ impl Gains {
     /// Reads gains from the contents of a gains file.
     ///
     /// # Errors
-    /// If the contents are not a gains file. Also if they have unknown keys, which would be lost
-    /// when the file is written again.
+    /// Returns an error if the contents are not a gains file. Also returns an error if they have
+    /// unknown keys, which would be lost when the file is written again.
     pub fn from_json(document: Value) -> io::Result<Self> {
         htex_base::schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
         let gains: Self = serde_json::from_value(document)?;
@@ -165,7 +165,8 @@ impl Gains {
     /// for each other. Creates the folder if it is missing.
     ///
     /// # Errors
-    /// The errors of [`Self::load`]. Also if the file cannot be written.
+    /// Returns the same errors as [`Self::load`]. Also returns an error if the file cannot be
+    /// written.
     #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {

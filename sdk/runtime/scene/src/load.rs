@@ -107,7 +107,7 @@ impl Scene {
     /// Opens a scene file and the files it names, for a device or with other models.
     ///
     /// # Errors
-    /// The errors of [`Self::open`].
+    /// Returns the same errors as [`Self::open`].
     pub fn open_with(
         path: &Path,
         around: &Surroundings<'_>,
@@ -120,7 +120,7 @@ impl Scene {
     /// `path`, but no file at `path` is opened.
     ///
     /// # Errors
-    /// The errors of [`Self::open`].
+    /// Returns the same errors as [`Self::open`].
     pub fn from_bytes(
         path: &Path,
         bytes: &[u8],
@@ -134,7 +134,7 @@ impl Scene {
     /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
     ///
     /// # Errors
-    /// The errors of [`Self::open`].
+    /// Returns the same errors as [`Self::open`].
     pub fn from_files(
         bytes: &[u8],
         files: &dyn FileSource,
@@ -159,7 +159,8 @@ impl Scene {
     /// Makes a scene with one surface that covers everything, without a scene file.
     ///
     /// # Errors
-    /// The errors of [`Self::open`]. Pointers in findings refer to the equivalent scene file.
+    /// Returns the same errors as [`Self::open`]. Pointers in findings refer to the equivalent
+    /// scene file.
     pub fn of_asset(
         asset: &Path,
         motion: Motion,
@@ -242,7 +243,7 @@ pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
 /// Validates a scene file and the files it names.
 ///
 /// # Errors
-/// If the file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, SceneError> {
     let rehearsal = DeviceOverride { rehearsal: true, ..DeviceOverride::default() };
     let findings = match Scene::open_with(path, around, &rehearsal) {

@@ -38,7 +38,7 @@ impl Costs {
     /// Measures all models in a registry and all stages. Takes about a second.
     ///
     /// # Errors
-    /// If a model cannot be fitted or played.
+    /// Returns an error if a model cannot be fitted or played.
     pub fn measure(models: &Registry, machine: &str) -> Result<Self, HostError> {
         let mut costs = Self { machine: machine.to_owned(), ..Self::nothing() };
         for model in models.models() {

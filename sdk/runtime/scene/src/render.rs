@@ -69,7 +69,7 @@ impl Renderer {
     /// Builds the stages of the plan.
     ///
     /// # Errors
-    /// If a model cannot make a voice.
+    /// Returns an error if a model cannot make a voice.
     pub fn new(scene: &Scene, plan: &Plan) -> Result<Self, SceneError> {
         let required = &plan.required;
         let mixes = plan

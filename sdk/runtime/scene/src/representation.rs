@@ -175,7 +175,7 @@ fn nearest_within(
 /// A `bound` of `None` accepts any error.
 ///
 /// # Errors
-/// If none of a surface's representations can be planned.
+/// Returns an error if none of a surface's representations can be planned.
 fn quickest(
     all: &[Candidates],
     bound: Option<f64>,

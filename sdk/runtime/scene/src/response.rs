@@ -13,7 +13,7 @@ pub use htex_recording::SetupResponse as Response;
 /// input). The unit does not matter, because only the shape is compensated.
 ///
 /// # Errors
-/// The errors of [`read_response`]. Also if no magnitude is above 0.
+/// Returns the same errors as [`read_response`]. Also returns an error if no magnitude is above 0.
 pub(crate) fn open(path: &Path) -> Result<Response, ReadError> {
     let file = path.file_name().unwrap_or(path.as_os_str());
     not_zero(read_response(path)?, &file.to_string_lossy())

@@ -54,7 +54,7 @@ impl Trace {
     /// known, `speed_mm_s`.
     ///
     /// # Errors
-    /// The errors of [`read_trace`].
+    /// Returns the same errors as [`read_trace`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_trace(path)?))
     }
@@ -62,7 +62,7 @@ impl Trace {
     /// Reads a trace like [`Self::open`], from a file in memory. Messages name `file`.
     ///
     /// # Errors
-    /// The errors of [`read_trace`].
+    /// Returns the same errors as [`read_trace`].
     pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
         Ok(Self::new(trace_from_bytes(file, bytes)?))
     }

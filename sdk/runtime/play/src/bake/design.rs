@@ -135,7 +135,7 @@ impl From<f64> for BakeLimits {
 /// limits, or until the block has 64 conditions.
 ///
 /// # Errors
-/// If the asset cannot be played, or if a condition or the rate is out of range.
+/// Returns an error if the asset cannot be played, or if a condition or the rate is out of range.
 pub fn bake(
     representation: Representation<'_>,
     grid: &Grid,

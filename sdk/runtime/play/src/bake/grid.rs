@@ -26,8 +26,8 @@ impl Grid {
     /// single precision.
     ///
     /// # Errors
-    /// If an axis is empty or has more than 32 different values, or if a value is outside the range
-    /// of a sliding finger: 0.5 to 1000 mm/s, 1e-6 to 20 N.
+    /// Returns an error if an axis is empty or has more than 32 different values, or if a value is
+    /// outside the range of a sliding finger: 0.5 to 1000 mm/s, 1e-6 to 20 N.
     pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, Error> {
         Ok(Self {
             speeds_mm_s: axis("the speeds", [MIN_SLIDING_MM_S, MOST_SPEED_MM_S], speeds_mm_s)?,
@@ -38,7 +38,8 @@ impl Grid {
     /// Makes a grid from a list of conditions.
     ///
     /// # Errors
-    /// The errors of [`Self::new`]. Also if a combination of the speeds and forces is missing.
+    /// Returns the same errors as [`Self::new`]. Also returns an error if a combination of the
+    /// speeds and forces is missing.
     pub fn from_conditions(at: &[Motion]) -> Result<Self, Error> {
         let grid = Self::new(
             at.iter().map(|m| m.speed_mm_s).collect(),
@@ -65,7 +66,7 @@ impl Grid {
     /// used. If it does not state a force, 0.4 N is used.
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the same errors as [`Self::new`].
     pub fn for_default_condition(representation: Representation<'_>) -> Result<Self, Error> {
         Self::from_conditions(&[representation.motion(None, None)])
     }

@@ -1,6 +1,7 @@
 //! Formatting of sample rates.
 
-/// Formats a sample rate with at most one decimal, or three below 10 Hz: `524.7 Hz`, `20000 Hz`.
+/// Formats a sample rate with at most one decimal, or with at most three decimals below 10 Hz:
+/// `524.7 Hz`, `20000 Hz`.
 pub fn hertz(rate_hz: f64) -> String {
     let text = if rate_hz.abs() < 10.0 { format!("{rate_hz:.3}") } else { format!("{rate_hz:.1}") };
     let text =

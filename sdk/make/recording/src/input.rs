@@ -16,8 +16,9 @@ const FRONT: usize = 4096;
 
 /// A file, or bytes in memory.
 enum Input<'a> {
-    /// A file of which at most one byte more than the limit is read. The extra byte shows that the
-    /// file is too long, so that a truncated file is never taken for a whole one.
+    /// A file, read up to one byte beyond the size limit. If this extra byte exists, the file is
+    /// too long and reading returns an error. Otherwise the first part of a long file could pass
+    /// for a whole file.
     File(Take<File>),
     Bytes(&'a [u8]),
 }

@@ -13,9 +13,9 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! Where an existing library validates its input, that library reads the format. This crate has its
-//! own readers for the other formats. All readers read only the columns that are used. They never
-//! allocate memory for a size that a file states but does not hold.
+//! An existing library reads a format if that library validates its input. This crate has its own
+//! readers for the other formats. All readers skip columns that are not used. If a file states a
+//! size that is larger than its contents, no reader allocates memory for the stated size.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -85,7 +85,8 @@ use input::{InputFile, file_name};
 /// The recording's warnings list assumed units, gaps in time and unused columns.
 ///
 /// # Errors
-/// See [`ReadError`]: every error names the file, and the place in it if there is one.
+/// See [`ReadError`]. Every error names the file and, if the problem is at one place in the file,
+/// that place.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
     // Before the file is read, so that a change during the reading makes the hash unknown instead
     // of wrong.

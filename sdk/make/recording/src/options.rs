@@ -13,24 +13,25 @@ use crate::value_limit::{MOST_VALUES, ValueLimit};
 #[non_exhaustive]
 pub struct ReadOptions {
     /// Sample rate, hertz. Required if the file states no rate and has no times. A given rate takes
-    /// precedence over the times and over the file's own rate. For a WAV or FLAC file it must equal
-    /// the file's rate.
+    /// precedence over the times and over the file's own rate. For a WAV or FLAC file, a given rate
+    /// must equal the file's rate.
     pub rate_hz: Option<f64>,
     /// Roles of columns. Columns that are not in the map are assigned by their names.
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY files without a column map, in the
-    /// quantity's unit. Without a scale, the reader assumes 1 and warns.
+    /// The physical value of a full-scale sample (1.0), in the quantity's unit. It applies to WAV,
+    /// FLAC and NPY files that are read without a column map. Without a scale, the reader assumes 1
+    /// and warns.
     pub scale: Option<f64>,
     /// Start of the part to read, in seconds after the file's first sample.
     pub from_s: Option<f64>,
     /// End of the part to read, in seconds after the file's first sample.
     pub to_s: Option<f64>,
-    /// A second file with the finger's motion.
+    /// A second file, which contains the finger's motion.
     pub tracker: Option<Tracker>,
-    /// Limit on the numbers of each file that are kept in memory; [`MOST_VALUES`] if absent. Unused
-    /// columns do not count.
+    /// Largest number of values that the reader keeps in memory from each file; `None` means
+    /// [`MOST_VALUES`]. Values in unused columns do not count.
     pub most_values: Option<usize>,
 }
 
@@ -55,7 +56,7 @@ impl ReadOptions {
         self
     }
 
-    /// Sets the value of a full-scale sample in WAV, FLAC and NPY.
+    /// Sets the physical value of a full-scale sample in a WAV, FLAC or NPY file.
     #[must_use]
     pub fn with_scale(mut self, scale: impl Into<Option<f64>>) -> Self {
         self.scale = scale.into();
@@ -76,14 +77,14 @@ impl ReadOptions {
         self
     }
 
-    /// Sets the limit on the numbers kept in memory.
+    /// Sets the largest number of values that the reader keeps in memory from each file.
     #[must_use]
     pub fn with_most_values(mut self, most_values: impl Into<Option<usize>>) -> Self {
         self.most_values = most_values.into();
         self
     }
 
-    /// Sets the second file with the finger's motion.
+    /// Sets the second file, which contains the finger's motion.
     #[must_use]
     pub fn with_tracker(mut self, tracker: impl Into<Option<Tracker>>) -> Self {
         self.tracker = tracker.into();

@@ -1,5 +1,5 @@
-//! Preview of a file: the roles that a reader would assign to its columns. Programs show the
-//! preview before they read the file, and let the user correct the roles.
+//! Preview of a file: the roles that a reader would assign to its columns. A program can show this
+//! preview before it reads the file, so that the user can correct the roles.
 
 use std::path::Path;
 
@@ -31,7 +31,8 @@ pub struct Preview {
     /// The roles as a column map ([`crate::ColumnMap`]), which the user may correct. Empty if no
     /// column has a role.
     pub map: String,
-    /// Why the file cannot be read as a recording with these options; `None` if it can.
+    /// The reason why the file cannot be read as a recording with these options; `None` if the file
+    /// can be read.
     pub problem: Option<String>,
 }
 
@@ -41,9 +42,10 @@ pub struct Preview {
 pub struct PreviewColumn {
     /// The column's name. A column without a name is called by its number, such as `#3`.
     pub name: String,
-    /// The role in which the column is read; `None` if it is not read.
+    /// The role that the reader assigns to the column; `None` if the reader skips the column.
     pub role: Option<Role>,
-    /// Factor to the unit of the role; 1 if the column is read only as part of an expression.
+    /// Factor that converts the column's numbers to the unit of the role. The factor is 1 if the
+    /// column only occurs in an expression of the column map.
     pub scale: f64,
     /// Unit of the role; empty if there is no role.
     pub unit: &'static str,
@@ -51,8 +53,8 @@ pub struct PreviewColumn {
     pub first: Vec<f64>,
 }
 
-/// Returns the role that a reader would assign to each column of a file. `path` is only the file's
-/// name; `bytes` is its content.
+/// Returns the role that a reader would assign to each column of a file. `bytes` is the content of
+/// the file. `path` supplies only the file's name and is not opened.
 ///
 /// ```
 /// use htex_recording::{ReadOptions, Role, preview};
@@ -66,8 +68,8 @@ pub struct PreviewColumn {
 /// ```
 ///
 /// # Errors
-/// Returns an error if the file has no columns of numbers at all, or an option does not apply.
-/// Columns without a clear role are not an error: they are reported in [`Preview::problem`].
+/// Returns an error if the file has no columns of numbers at all, or an option does not apply. A
+/// column without a clear role is not an error: [`Preview::problem`] reports it.
 pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
     let previewed = || {
         options.check()?;

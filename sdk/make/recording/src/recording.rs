@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use crate::hash::RecordedFile;
 
-/// Highest sample rate, hertz: above the rate of any force sensor, and low enough that sample
-/// counts are exact.
+/// Highest sample rate of a recording, hertz. No force sensor is faster, and at this rate sample
+/// counts are still exact.
 pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest magnitude of a sample, in any unit. It keeps sums of squares over hours finite.
 const LARGEST: f64 = 1e12;
@@ -57,8 +57,8 @@ pub enum RecordingError {
     },
 }
 
-/// A recording: the texture's signal, such as the lateral force, with the normal force and the
-/// speed if they are known.
+/// A recording: the texture's signal, such as the lateral force, and optionally the normal force
+/// and the sliding speed.
 ///
 /// All signals have the same length of at least two samples. Their values are finite, with
 /// magnitudes up to 1e12.
@@ -72,8 +72,9 @@ pub struct Recording {
     pub rate_hz: f64,
     /// Quantity of the axes.
     pub quantity: Quantity,
-    /// The signal in the quantity's unit, as one axis or several perpendicular axes: up to two of a
-    /// lateral force, up to three of an acceleration, velocity or displacement.
+    /// The texture's signal in the quantity's unit, one list of samples for each axis. The axes are
+    /// perpendicular. A lateral force has at most two, a normal force one, and an acceleration,
+    /// velocity or displacement at most three.
     pub axes: Vec<Vec<f64>>,
     /// Normal force, newtons, with a positive mean.
     pub normal_n: Option<Vec<f64>>,
@@ -85,7 +86,7 @@ pub struct Recording {
     pub first_sample: usize,
     /// Findings about the time column: gaps, jitter.
     pub clock_findings: Vec<Finding>,
-    /// What the reader assumed and observed, each as a full sentence.
+    /// The reader's assumptions and observations, each a full sentence.
     pub warnings: Vec<Notice>,
 }
 
@@ -159,8 +160,8 @@ impl Recording {
         })
     }
 
-    /// Adds the normal force, newtons. A force with a negative mean is inverted, so that pressing
-    /// is positive whatever the sign of the sensor.
+    /// Adds the normal force, newtons. If the mean of the force is negative, all samples change
+    /// sign, because some sensors report pressing as negative.
     ///
     /// # Errors
     /// Returns an error if the signal differs in length from the axes, or a value is not finite or
@@ -256,8 +257,8 @@ impl Recording {
         }
     }
 
-    /// Returns the name of an axis in messages and in the pointers of findings: `lateral_x`,
-    /// `signal`.
+    /// Returns the name by which messages and the pointers of findings refer to an axis, such as
+    /// `lateral_x` or `signal`.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {

@@ -1,4 +1,4 @@
-//! The setup's frequency response: the gain of the recording rig for a lateral force.
+//! The frequency response of a recording setup to a lateral force.
 
 use std::path::Path;
 use std::{fmt, io};
@@ -32,9 +32,9 @@ pub struct SetupResponse {
 }
 
 impl SetupResponse {
-    /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase
-    /// are interpolated linearly in frequency, and constant below the first frequency and above the
-    /// last.
+    /// Returns the real and the imaginary part of the response at a frequency in hertz. Magnitude
+    /// and unwrapped phase are interpolated linearly in frequency, and constant below the first
+    /// frequency and above the last.
     ///
     /// ```
     /// # use htex_recording::SetupResponse;
@@ -77,8 +77,8 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number has the shortest form
-    /// that reads back to the same bits.
+    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number is written with the
+    /// fewest digits from which the same floating-point number can be read back.
     ///
     /// # Errors
     /// Returns an error if the writer fails.
@@ -92,16 +92,16 @@ impl SetupResponse {
     }
 }
 
-/// Ranges of frequency in which a division by the setup's response raises a spectrum by more than
-/// 10 dB.
+/// The frequency ranges in which dividing a spectrum by the setup's response raises the spectrum by
+/// more than 10 dB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RaisedRanges {
     /// For each range, its lowest and highest frequency in hertz, and its largest gain in decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
-/// Returns the ranges of frequency in which gains exceed 10 dB; `None` if there are none. `gains`
-/// has the gain at each frequency of `frequency_hz`, as a factor.
+/// Returns the frequency ranges in which gains exceed 10 dB, or `None` if no gain does. `gains` has
+/// one gain, as a factor, for each frequency in `frequency_hz`.
 pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<RaisedRanges> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;

@@ -1,7 +1,7 @@
-//! Running sums, which give the mean of any stretch of a signal from two look-ups.
+//! Running sums of a signal, from which the mean of any part takes only two look-ups.
 
-/// Running sums of a signal: for each sample, the sum of all samples before it, and at the end the
-/// sum of all samples.
+/// Running sums of a signal. For each sample there is the sum of all samples before it. The last
+/// entry is the sum of all samples.
 pub struct Sums(Vec<f64>);
 
 impl Sums {
@@ -31,8 +31,8 @@ impl Sums {
         (self.0[to] - self.0[from]) / (to - from).max(1) as f64
     }
 
-    /// Returns the mean over the `2·half + 1` samples around a sample. At the ends there are fewer
-    /// samples.
+    /// Returns the mean over the `2·half + 1` samples around a sample. Near the ends of the signal,
+    /// the mean is over fewer samples.
     #[must_use]
     pub fn mean_around(&self, at: usize, half: usize) -> f64 {
         self.mean(at.saturating_sub(half), (at + half + 1).min(self.samples()))

@@ -30,7 +30,7 @@ pub struct TraceColumns {
     pub force_n: Vec<f64>,
     /// Sliding speed, mm/s, if the trace contains it.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// Assumptions of the reader, such as assumed units, and unused columns.
+    /// Warnings of the reader: assumed units and unused columns.
     pub warnings: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ pub struct StrokeColumns {
     pub speed_mm_s: Vec<f64>,
     /// Normal force, newtons.
     pub force_n: Vec<f64>,
-    /// Assumptions of the reader, such as assumed units, and unused columns.
+    /// Warnings of the reader: assumed units and unused columns.
     pub warnings: Vec<String>,
 }
 

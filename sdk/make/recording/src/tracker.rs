@@ -1,4 +1,5 @@
-//! The file of a tracker, which records the finger's motion beside a recording.
+//! The file of a tracker: an instrument that records the finger's motion while another instrument
+//! records the texture.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,17 +8,17 @@ use crate::columns::map::ColumnMap;
 
 /// A file with the finger's position or speed over time, in any format that recordings may have.
 ///
-/// Both files must take their times from the same clock. A recording without times begins at 0 s,
-/// and so does a tracker file that states a sample rate but no times. The reader cuts the recording
-/// to the time that the tracker covers.
+/// The recording and the tracker file must take their times from the same clock. If a file states a
+/// sample rate but no times, its first sample is at 0 s. The reader cuts the recording to the time
+/// that the tracker covers.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Tracker {
     pub path: PathBuf,
-    /// The bytes of the file. If absent, the file is read from the path.
+    /// The content of the file. If it is `None`, the reader opens the file at `path`.
     pub bytes: Option<Arc<[u8]>>,
-    /// Roles of its columns: time, x, y, speed. Columns that are not in the map are assigned by
-    /// their names.
+    /// Roles of the file's columns: time, x, y, speed. Columns that are not in the map are assigned
+    /// by their names.
     pub map: Option<ColumnMap>,
 }
 
@@ -29,14 +30,15 @@ impl Tracker {
         Self { path: path.into(), bytes: None, map: None }
     }
 
-    /// Provides the bytes of the file; the path is then only its name.
+    /// Provides the content of the file, so that the reader does not open `path` and uses it only
+    /// as the file's name.
     #[must_use]
     pub fn with_bytes(mut self, bytes: impl Into<Arc<[u8]>>) -> Self {
         self.bytes = Some(bytes.into());
         self
     }
 
-    /// Sets the roles of its columns.
+    /// Sets the roles of the file's columns.
     #[must_use]
     pub fn with_map(mut self, map: impl Into<Option<ColumnMap>>) -> Self {
         self.map = map.into();

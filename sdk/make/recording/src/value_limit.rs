@@ -1,10 +1,10 @@
-//! Limit on the numbers from a file that are kept in memory.
+//! Limit on how many numbers of a file a reader keeps in memory.
 
 use crate::error::ReadProblem;
 
-/// Default limit on the numbers that are kept from a file: enough for 11 minutes of three columns
-/// at 20 kHz. Together with derived data, each number takes 8 to 40 bytes of memory, most at low
-/// sample rates.
+/// Default limit on how many numbers of a file a reader keeps in memory: enough for three columns
+/// of 11 minutes at 20 kHz. Each number, with the data derived from it, takes 8 to 40 bytes of
+/// memory. The lower the sample rate, the more bytes each number takes.
 pub const MOST_VALUES: usize = 40_000_000;
 
 /// Limit on the numbers kept from one file.

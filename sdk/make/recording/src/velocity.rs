@@ -5,15 +5,15 @@
 /// instead of the motion.
 const REACH_S: f64 = 0.05;
 
-/// Returns the velocity at ascending times, from positions at the times `t_s`, which must ascend
-/// strictly from 0.
+/// Returns the velocity at the ascending times `at_s`, computed from positions at the times `t_s`.
+/// The times `t_s` must start at 0 and ascend strictly.
 ///
 /// The velocity is the slope of the position, averaged with a triangular window of 100 ms. Between
-/// rows, the position counts as linear. The result is exact for a constant velocity at any spacing
-/// of the rows, and a 60 Hz tracker that repeats its last value does not disturb it. Within 50 ms
-/// of the ends, and beyond them, the velocity is constant. Its unit is the position's unit per
-/// second. The function computes it as the second difference, over 50 ms, of the position's
-/// integral.
+/// rows, the position is interpolated linearly. A constant velocity is computed exactly, however
+/// the rows are spaced. A 60 Hz tracker that repeats its last value does not disturb the result.
+/// The velocity is constant within 50 ms of the first and of the last row, and outside these rows.
+/// The unit of the velocity is the position's unit per second. The function computes the velocity
+/// from the integral of the position, as its second difference over steps of 50 ms.
 ///
 /// ```
 /// # use htex_recording::velocity;

@@ -55,7 +55,7 @@
 pub use htex_author as author;
 #[cfg(feature = "scene")]
 pub use htex_device as device;
-/// The `.htex` file: its types, reading, writing and validation.
+/// The `.htex` file: types, reading, writing and validation.
 pub use htex_format as format;
 /// Opens and plays textures. The main types are also at the root of this crate.
 pub use htex_play as play;

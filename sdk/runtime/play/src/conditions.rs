@@ -68,8 +68,8 @@ impl Conditions {
         }
     }
 
-    /// Returns how a voice with these effects plays a motion, and whether the motion lies between
-    /// the recorded conditions.
+    /// Returns how a voice with these effects plays a motion, and whether the motion is within the
+    /// range of the recorded conditions.
     pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
         let Placement { scaling, nearest, .. } = self.locate(motion);
         self.range.coverage(motion, nearest, scaling, effects)

@@ -1,10 +1,10 @@
 //! A voice's output summarised in a few numbers, for vibration motors, phones and gamepads that
 //! play a level and a frequency instead of samples.
 //!
-//! The level is exact and has no delay: it is computed from the samples of the block itself. The
-//! centroid and the bands are computed from Hann windows, as [`htex_dsp::envelope`] defines them,
-//! so they lag behind. At 20 and 48 kHz, the middle of a window is 21 to 26 ms before its end, and
-//! a window ends every 11 to 13 ms.
+//! The level is exact and has no delay, because it is computed from the block's own samples. The
+//! centroid and the bands have a delay, because they are computed from Hann windows
+//! ([`htex_dsp::envelope`]). At sample rates of 20 and 48 kHz, the middle of a window is 21 to 26
+//! ms before its end, and a window ends every 11 to 13 ms.
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;

@@ -3,8 +3,8 @@
 use htex_format::ReadError;
 use htex_host::HostError;
 
-/// An error from opening, playing or baking a texture. [`Self::kind`] says what kind of error it
-/// is, without details.
+/// An error from opening, playing or baking a texture. [`Self::kind`] returns the kind of the
+/// error, without details.
 ///
 /// ```
 /// use htex::Texture;
@@ -52,7 +52,7 @@ pub enum Error {
     )]
     ModelVersion { model: String, asset: String, installed: String },
     /// The installed version of the model is older than the version that fitted the asset, and
-    /// lacks some of its fields.
+    /// lacks some of the asset's fields.
     #[error(
         "version {installed} of {model} is installed, and the asset was fitted by {asset}: {problem}; install version {asset} or \
          newer of {model}{}", if *.embedded { ", or allow the model that the asset embeds" } else { "" }
@@ -116,7 +116,7 @@ pub enum Error {
         /// Position along the path, mm.
         position_mm: f64,
     },
-    /// The sample rate of a voice is invalid, or too low for its texture.
+    /// The sample rate of a voice is invalid, or too low for the voice's texture.
     #[error(
         "a rate of {rate_hz} Hz: it must be from {least_hz} Hz, twice the highest frequency of the texture, to 10 MHz"
     )]
@@ -152,8 +152,8 @@ pub enum Error {
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
     Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
-    /// The conditions to bake do not form a grid: a combination of their speeds and forces is
-    /// missing.
+    /// The conditions to bake do not form a grid, because a combination of one of their speeds and
+    /// one of their forces is missing.
     #[cfg(feature = "bake")]
     #[error(
         "no condition at {speed_mm_s} mm/s and {force_n} N: the conditions are all combinations of their speeds and \

@@ -21,8 +21,8 @@ pub const MOST_FORCE_N: f64 = 20.0;
 /// Maximum time, in seconds, for which a voice holds the last valid motion while readings are out
 /// of range.
 pub const HOLD_S: f64 = 0.1;
-/// Speed (mm/s) and force (newtons) that are assumed where a texture does not state them. They are
-/// the values of the paper's study.
+/// Speed (mm/s) and normal force (newtons) that are assumed where a texture does not state them.
+/// The study in the project's paper used the same speed and force.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
 /// Default ceiling of a voice's level, as a multiple of the strongest recorded level.
 pub const CEILING: f64 = 4.0;
@@ -32,8 +32,8 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
     speed_mm_s.abs() >= MIN_SLIDING_MM_S && force_n > 0.0
 }
 
-/// Effects of a motion on a voice, in addition to interpolation between recorded conditions. A
-/// scene has effects with the same names.
+/// Effects of a motion on a voice, in addition to interpolation between recorded conditions. The
+/// effects of a scene have the same names.
 ///
 /// ```
 /// use htex::play::Effects;
@@ -70,8 +70,8 @@ impl Effects {
         Self { contact, ..self }
     }
 
-    /// No effects: the texture plays as recorded at any motion. It is still interpolated between
-    /// recorded conditions.
+    /// No effects. A motion still selects the recorded condition, or interpolates between recorded
+    /// conditions.
     pub const NONE: Self = Self { frequency_scaling: false, level_scaling: false, contact: false };
 }
 
@@ -91,10 +91,10 @@ impl Default for Effects {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Interval {
-    /// The asset does not state the value for every condition, or all values are 0. The speed or
-    /// force then has no effect.
+    /// The asset does not state this speed or force for every condition, or all its values are 0.
+    /// The speed or force of the finger then has no effect.
     Unknown,
-    /// One value, or several values between which the texture is interpolated.
+    /// The conditions have one value, or several values between which the texture is interpolated.
     Between {
         /// The lowest recorded value, in mm/s or newtons.
         low: f64,
@@ -121,7 +121,7 @@ impl Interval {
         matches!(*self, Self::Between { low, high } if Condition::is_same(low, high))
     }
 
-    /// Returns whether the asset states the value.
+    /// Returns whether the range is known.
     pub fn is_known(&self) -> bool {
         *self != Self::Unknown
     }
@@ -218,8 +218,8 @@ impl RecordedRange {
     }
 }
 
-/// The factors that scale a texture at a motion outside the recorded range. Inside the range, both
-/// are 1.
+/// The factors that scale a texture's frequencies and level at a motion outside the recorded range.
+/// Inside the range, both factors are 1.
 ///
 /// ```no_run
 /// use htex::{Motion, Texture};
@@ -298,7 +298,8 @@ pub enum Reach {
     Inside,
     /// The asset does not state the recorded value, so the speed or force has no effect.
     Unknown,
-    /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
+    /// The model receives the motion and determines frequencies and level itself
+    /// ([`crate::Voice::follows_motion`]).
     Followed,
     /// The texture is played as at the nearest recorded value, and then scaled by the asset's law.
     Outside {
@@ -310,9 +311,9 @@ pub enum Reach {
 }
 
 impl Coverage {
-    /// Returns how far the requested motion is from the motion that is actually played, as a
-    /// relative difference. It is 0 if the texture is played as recorded, interpolated, or scaled
-    /// to the motion.
+    /// Returns the relative difference between the requested motion and the motion that is actually
+    /// played. The difference is 0 if the texture is played as recorded, interpolated, or scaled to
+    /// the requested motion.
     pub fn excess(&self) -> f64 {
         let speed = match (self.scales_speed, self.speed) {
             (false, speed) => speed.excess(1.0),
@@ -330,8 +331,8 @@ impl Coverage {
         if excess > 1e-9 { excess } else { 0.0 }
     }
 
-    /// Returns whether the texture is played as recorded, or interpolated between recordings.
-    /// Unknown values are ignored.
+    /// Returns whether the texture is played as recorded, or interpolated between recordings. A
+    /// speed or force that the asset does not state is ignored.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)

@@ -14,7 +14,7 @@
 //! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
 //!
 //! This code is not part of `htex`, because `htex` re-exports `htex-scene`, and `htex-scene` needs
-//! this code. If `htex` contained it, the two crates would depend on each other.
+//! this code. If `htex` contained this code, `htex` and `htex-scene` would depend on each other.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

@@ -3,22 +3,22 @@
 //! The recorded conditions are points (speed, force). The mesh divides each axis by its largest
 //! value and triangulates the points (Delaunay). The weights of a motion are its barycentric
 //! coordinates in its triangle. A motion outside the hull has the weights of the nearest point of
-//! the hull. Measured conditions are not exactly aligned, and a grid has several triangulations, so
-//! these rules apply:
+//! the hull. Measured conditions are not exactly aligned, and a grid has several triangulations.
+//! Therefore the following rules apply:
 //!
-//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] count as one value, and so do
-//!   forces (`axis`).
-//! - If there are several Delaunay triangulations, as for a grid, a rule chooses one (`cells`).
+//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] count as one speed, and forces
+//!   that are equal within this tolerance count as one force (module `axis`).
+//! - If there are several Delaunay triangulations, as for a grid, the module `cells` chooses one.
 //! - A condition counts as lying on an edge of the hull if it equals its projection on this edge,
-//!   within the same tolerance. The narrow triangle between the condition and the edge is not used
-//!   for interpolation. Motions in this triangle, and motions outside the hull next to it, have the
-//!   weights of their projections on the edge.
+//!   within the same tolerance. The narrow triangle between such a condition and the edge is not
+//!   used for interpolation. A motion inside this triangle is projected on the edge, and so is a
+//!   motion next to this triangle outside the hull. The projection then determines the weights.
 //!
 //! The weights change continuously with the motion. At a recorded condition, only that condition's
 //! weight is not zero.
 //!
-//! An asset may store triangles (`stored`). Weights are then barycentric in the stored triangles,
-//! and none of these rules applies.
+//! An asset may store its own triangles (module `stored`). Weights are then barycentric in the
+//! stored triangles, and the rules above do not apply.
 
 mod axis;
 mod cells;
@@ -89,7 +89,7 @@ impl Weights {
 }
 
 /// A triangulation of recorded conditions, which gives the weights for any motion. Section 11 of
-/// the format's specification states its rules.
+/// the format's specification states the rules of the triangulation.
 ///
 /// ```
 /// use htex_play::Mesh;
@@ -140,8 +140,8 @@ impl Mesh {
         triangulation::mesh(conditions)
     }
 
-    /// Makes a mesh from points and the triangles that an asset stores. If there are no triangles,
-    /// it does the same as [`Self::new`].
+    /// Makes a mesh from points and the triangles that an asset stores. Without triangles, the
+    /// result is the same as from [`Self::new`].
     ///
     /// # Errors
     /// Returns an error if the triangles are invalid: [`htex_format::check_triangles`].
@@ -175,8 +175,8 @@ impl Mesh {
         (weights.numbered(&self.numbers), nearest)
     }
 
-    /// Returns whether a motion lies inside the mesh or on its edge. A mesh that is a line
-    /// surrounds only the motions on that line.
+    /// Returns whether a motion lies inside the mesh or on its edge. If all conditions lie on one
+    /// line, only motions on the line between the conditions count as inside.
     pub fn surrounds(&self, speed_mm_s: f64, force_n: f64) -> bool {
         let [speed, force] = &self.axes;
         let q = [speed.place(speed_mm_s), force.place(force_n)];
@@ -185,7 +185,8 @@ impl Mesh {
             || self.sides.iter().any(on_side)
     }
 
-    /// Iterates over the triangles, as indices of the caller's conditions.
+    /// Iterates over the triangles. Each triangle is given as three indices into the points from
+    /// which the mesh was made.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         let own = |corners: [usize; 3]| corners.map(|i| self.numbers[i]);
         self.faces.iter().map(move |face| own(face.corners))

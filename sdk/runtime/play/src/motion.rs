@@ -15,8 +15,8 @@ use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S, slides};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
-    /// Scanning speed, mm/s, finite. A voice of a texture expects a magnitude and refuses a
-    /// negative speed. In a scene, the speed is negative on the back stroke.
+    /// Scanning speed, mm/s, finite. A voice of a texture expects the speed without a direction and
+    /// refuses a negative value. In a scene, the speed is negative on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, newtons. It must be finite and not negative.
     pub force_n: f64,
@@ -56,9 +56,9 @@ impl Motion {
         Self::new(self.speed_mm_s.abs(), self.force_n)
     }
 
-    /// Returns whether a finger can move like this, in either direction: all numbers are finite,
-    /// the force is not negative, the speed is at most 1000 mm/s and the force at most 20 N. A
-    /// motion outside these limits is a failed reading.
+    /// Returns whether a finger can make this motion. All numbers must be finite, the speed must be
+    /// at most 1000 mm/s in either direction, and the force must be from 0 to 20 N. A motion
+    /// outside these limits counts as a failed reading of a sensor.
     pub fn is_reading(&self) -> bool {
         let unsigned = Self { speed_mm_s: self.speed_mm_s.abs(), ..*self };
         unsigned.checked().is_ok() && unsigned.is_plausible()

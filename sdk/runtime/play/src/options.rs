@@ -70,8 +70,9 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets how the samples are made: by the model itself, or by a method that computes less but
-    /// keeps the spectrum constant. A [`SampleSource`](crate::SampleSource) is always streamed.
+    /// Sets how the samples are made. The model itself renders them, or a method with less
+    /// computation renders them with a constant spectrum. A [`SampleSource`](crate::SampleSource)
+    /// is always streamed.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
@@ -79,8 +80,8 @@ impl VoiceOptions {
     }
 
     /// Sets the ceiling of the level at motions outside the recorded range, as a multiple of the
-    /// strongest recorded level. It must be above 0 and finite. The ceiling limits only how far a
-    /// motion raises the level; it never makes a recorded level weaker.
+    /// strongest recorded level. The ceiling must be above 0 and finite. It limits how far a motion
+    /// can raise the level, but it never lowers a recorded level.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;
@@ -112,7 +113,7 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets the effects of a motion. A [`SampleSource`](crate::SampleSource) applies none.
+    /// Sets the effects of a motion. A [`SampleSource`](crate::SampleSource) ignores these effects.
     #[must_use]
     pub fn with_effects(mut self, effects: Effects) -> Self {
         self.effects = effects;

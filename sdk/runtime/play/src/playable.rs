@@ -1,4 +1,5 @@
-//! Chooses the model for a representation, and the order of its fields.
+//! Chooses the model that plays a representation, and the order in which the fields are passed to
+//! the model.
 
 use htex_format::{FieldOrder, Representation, match_fields};
 use htex_host::{LoadedModel, Registry};
@@ -7,10 +8,11 @@ use semver::Version;
 use crate::Error;
 
 /// Returns the model in `registry` that plays a representation. Candidates are the models with the
-/// representation's id and major version, in the order of the registry. This function returns the
-/// first candidate that has the representation's fields and is not older than the model version
-/// that fitted it. If there is none, it returns the first candidate that has the fields, or else
-/// the first candidate.
+/// representation's id and major version, in the order of the registry. The function returns the
+/// first candidate that has the representation's fields and is not older than the version of the
+/// model that fitted the representation. If there is no such candidate, the function returns the
+/// first candidate that has the fields. If no candidate has the fields, the function returns the
+/// first candidate.
 ///
 /// ```no_run
 /// let asset = htex::Texture::open("sandpaper.htex")?;
@@ -66,8 +68,9 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// ```
 ///
 /// # Errors
-/// Returns an error if the fields differ from the model's: [`Error::ModelOlder`] if a newer version
-/// fitted them, otherwise [`Error::Fields`].
+/// Returns an error if the fields of the representation differ from the model's. The error is
+/// [`Error::ModelOlder`] if a newer version of the model fitted the representation, and otherwise
+/// [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
     loaded: &LoadedModel,

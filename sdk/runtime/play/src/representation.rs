@@ -1,4 +1,4 @@
-//! A representation of a texture: parameters and the model that plays them.
+//! A representation of a texture: the parameters of a model, and the model that plays them.
 
 use htex_format::Condition;
 use htex_host::{LoadedModel, StillSound, Synthesis};
@@ -139,8 +139,9 @@ impl<'a> Representation<'a> {
         )?)
     }
 
-    /// Makes the source of a voice, which renders samples of unit RMS without the level. The model
-    /// chooses the source's sample rate for a player that runs at the rate in the options.
+    /// Makes the source of a voice: a stream of samples of unit RMS, to which the level is not
+    /// applied. `options` has the sample rate of the program's output. For this rate, the model
+    /// chooses the sample rate of the source.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -154,10 +155,10 @@ impl<'a> Representation<'a> {
 
     /// Returns the magnitudes that a long recording of the voice would show at a motion, or at the
     /// default condition if `motion` is `None`. Frequencies are in hertz, magnitudes in the asset's
-    /// unit. Outside the recorded conditions, the asset's scaling law applies. Where the finger
-    /// does not slide, the magnitudes are 0. If the law scales all frequencies by a ratio r, noise
-    /// of magnitude m(f) has the magnitude `m(f / r) / sqrt(r)`, and a sum of sinusoids has the
-    /// magnitude `m(f / r)`.
+    /// unit. Outside the recorded conditions, the asset's scaling law applies. At a motion at which
+    /// the finger does not slide, the magnitudes are 0. Suppose that m(f) is the magnitude at a
+    /// recorded condition, and that the law scales all frequencies by a ratio r. The magnitude of
+    /// noise is then `m(f / r) / sqrt(r)`, and the magnitude of a sum of sinusoids is `m(f / r)`.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -177,7 +178,7 @@ impl<'a> Representation<'a> {
 
     /// Returns the level of a voice at a motion, or at the default condition if `motion` is `None`.
     /// The level is the RMS in the asset's unit. Outside the recorded conditions, the asset's
-    /// scaling law applies. Where the finger does not slide, the level is 0.
+    /// scaling law applies. At a motion at which the finger does not slide, the level is 0.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -204,8 +205,8 @@ impl<'a> Representation<'a> {
     }
 
     /// Returns the magnitudes at a motion as they were recorded, or interpolated between
-    /// recordings. Unlike [`Self::magnitude`], it does not apply the asset's law, and it also
-    /// returns magnitudes where the finger does not slide.
+    /// recordings. Unlike [`Self::magnitude`], this function does not apply the asset's scaling
+    /// law, and the magnitudes are not 0 at motions at which the finger does not slide.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -220,8 +221,8 @@ impl<'a> Representation<'a> {
     }
 
     /// Returns the parameters (a flat array) and the level (RMS, in the asset's unit) at a motion,
-    /// as recorded or interpolated between recordings. Without a motion it uses the default
-    /// condition.
+    /// as recorded or interpolated between recordings. If `motion` is `None`, the function uses the
+    /// default condition.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -270,11 +271,11 @@ impl<'a> Representation<'a> {
     /// Returns the default condition, at which the representation is played when no motion is
     /// given, as an index into the manifest's conditions. Loads no model.
     ///
-    /// The default is the representation's first condition, unless this condition is silent. Then
-    /// it is the condition with the highest level among those that are not silent, and the first of
-    /// them if several have the same level. If all conditions are silent, it is the first
-    /// condition. A condition is silent if its level is 0, or if a finger does not slide at its
-    /// stated speed or force.
+    /// The default is the representation's first condition, unless this condition is silent. If it
+    /// is silent, the default is the condition with the highest level that is not silent, and the
+    /// first of several such conditions with equal levels. If all conditions are silent, the
+    /// default is the first condition. A condition is silent if its level is 0, or if a finger does
+    /// not slide at its stated speed or force.
     pub fn default_condition(&self) -> usize {
         let at = &self.data().at;
         let default = default_condition(at, &self.texture.manifest().conditions);
@@ -282,8 +283,8 @@ impl<'a> Representation<'a> {
     }
 
     /// Returns a motion with a speed in mm/s and a force in newtons. A missing value is taken from
-    /// [`Self::default_condition`]. If that condition does not state it either, it is 80 mm/s or
-    /// 0.4 N.
+    /// [`Self::default_condition`]. If the default condition does not state the value either, the
+    /// speed is 80 mm/s or the force is 0.4 N.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;

@@ -81,8 +81,8 @@ impl SampleSource {
         self.rate_hz
     }
 
-    /// Returns whether the model always renders at this rate, no matter which rate the player
-    /// wants. If so, convert the samples with
+    /// Returns whether the model always renders at its own rate, no matter which rate the player
+    /// wants. If this is the case, convert the samples with
     /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that the texture
     /// has the same level at all rates.
     pub fn has_own_rate(&self) -> bool {
@@ -104,8 +104,8 @@ impl SampleSource {
         self.level_rms
     }
 
-    /// Returns whether the model follows the motion itself. If so, call [`Self::follow`] for every
-    /// motion, and scale neither frequencies nor level.
+    /// Returns whether the model follows the motion itself. If this is the case, call
+    /// [`Self::follow`] for every motion, and scale neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
@@ -172,11 +172,12 @@ impl SampleSource {
         &self.recorded.conditions
     }
 
-    /// Changes gradually to the spectrum at this motion, interpolated between recorded conditions,
-    /// and returns its level. For a motion outside the recorded conditions, it is the spectrum at
-    /// the nearest motion within them. Setting the same motion again costs no time. For a new
-    /// motion, the source interpolates parameters in memory that it already owns. Does not
-    /// allocate, lock or do I/O if the model keeps to the ABI, as this project's models do.
+    /// Changes gradually to the spectrum at this motion, which is interpolated between recorded
+    /// conditions, and returns the level at this motion. A motion outside the recorded conditions
+    /// has the spectrum and the level of the nearest motion within them. Setting the same motion
+    /// again costs no time. For a new motion, the source interpolates parameters in memory that it
+    /// already owns. Does not allocate, lock or do I/O if the model keeps to the ABI, as this
+    /// project's models do.
     ///
     /// # Errors
     /// Returns an error if a value is out of range (see [`Motion`]), or the model cannot

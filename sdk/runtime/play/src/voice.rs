@@ -178,8 +178,8 @@ impl Voice {
         self.stream.source_mut().follow(motion, self.played as f64 / self.rate_hz)
     }
 
-    /// Returns how this voice plays a motion, and whether the motion lies between the recorded
-    /// conditions. Does not allocate.
+    /// Returns how this voice plays a motion, and whether the motion is within the range of the
+    /// recorded conditions. Does not allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
         let mut coverage = self.stream.source().conditions().coverage(motion, effects);

@@ -3,9 +3,10 @@
 //!
 //! The filters of the conditions are projected on the leading eigenvectors of the matrix of their
 //! inner products. An inner product is the product of two filters' responses, weighted by the mean
-//! inverse power at each frequency. So an error counts as much in a faint band as in a loud one.
-//! Projection is linear, so a motion between conditions can mix the projected filters with the same
-//! formula. Weights and coefficients are stored as 16-bit integers with a scale.
+//! inverse power at each frequency. Because of this weight, an error counts as much in a faint
+//! frequency band as in a loud band. Projection is linear, so for a motion between conditions, the
+//! player mixes projected filters with the same weights as original filters. Weights and
+//! coefficients are stored as 16-bit integers with a scale.
 
 use std::ops::RangeInclusive;
 

@@ -59,7 +59,8 @@ pub struct BakeResult {
     pub quantity: Quantity,
     /// The scaling law that the texture follows when the motion is beyond the grid.
     pub law: Law,
-    /// Ceiling of the level beyond the grid: the scaling law does not raise the level above it.
+    /// Highest level, in the asset's unit, to which the scaling law may raise the texture beyond
+    /// the grid.
     pub ceiling: f64,
     /// A magnitude that samples rarely exceed while the motion is within the grid.
     pub full_scale: f64,
@@ -71,22 +72,23 @@ pub struct BakeResult {
     pub filters: usize,
     /// Number of sinusoids; 0 for noise.
     pub tones: usize,
-    /// Largest error of the nine bands at the conditions, dB. Only bands within 40 dB of the
-    /// strongest one count.
+    /// Largest error at the conditions, dB, of the nine frequency bands in which spectra are
+    /// compared. Only bands within 40 dB of the strongest band count.
     pub at_conditions_db: f64,
-    /// Largest error of the nine bands midway between conditions, dB. At these motions, the model
-    /// interpolates parameters, but the player mixes filters or sinusoids.
+    /// Largest error of the nine bands midway between conditions, dB. It is not 0 because the model
+    /// interpolates parameters between conditions, whereas the player mixes filters or sinusoids.
     pub between_db: f64,
     /// Largest error of the nine bands at half the lowest and twice the highest speed of the grid,
-    /// dB. At these speeds, the scaling law changes the frequencies of the texture, but a filter
-    /// cannot change its frequencies. `None` if the law does not change frequencies, and for
-    /// sinusoids, because sinusoids follow the law.
+    /// dB. It shows the effect of a limitation: the scaling law changes the frequencies of the
+    /// texture at these speeds, but the player cannot change the frequencies of a filter. `None` if
+    /// the law does not change frequencies, and for sinusoids, whose frequencies the player can
+    /// change.
     pub beyond_db: Option<f64>,
     /// Lowest and highest recorded speed, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
 }
 
-/// How accurate a block has to be, and how much it may cost.
+/// Limits for baking: the largest error of a block, and the largest number of filter coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BakeLimits {
@@ -103,12 +105,14 @@ impl BakeLimits {
     /// Largest number of coefficients of a filter.
     pub const MOST: usize = 2 * MOST_HALF + 1;
 
-    /// Limits the error between conditions, dB.
+    /// Limits the error midway between conditions, in decibels, and allows filters of any length up
+    /// to [`Self::MOST`] coefficients.
     pub fn within_db(within_db: f64) -> Self {
         Self { within_db, longest: Self::MOST }
     }
 
-    /// Limits the number of coefficients of a filter. At least [`Self::FEWEST`] are used.
+    /// Limits the number of coefficients of a filter. A limit below [`Self::FEWEST`] has the effect
+    /// of [`Self::FEWEST`].
     #[must_use]
     pub fn with_longest(self, longest: usize) -> Self {
         Self { longest, ..self }
@@ -130,7 +134,7 @@ impl From<f64> for BakeLimits {
 /// Bakes a representation: converts it to a block for a microcontroller, with the conditions of
 /// `grid` and the sample rate `rate_hz`.
 ///
-/// `limits` may also be a number: the limit of the error midway between conditions, in decibels.
+/// `limits` may also be a number: the largest allowed error midway between conditions, in decibels.
 /// Conditions are inserted midway between neighbours until the error at all midpoints is within the
 /// limits, or until the block has 64 conditions.
 ///

@@ -26,8 +26,8 @@ impl Grid {
     /// single precision.
     ///
     /// # Errors
-    /// Returns an error if an axis is empty or has more than 32 different values, or if a value is
-    /// outside the range of a sliding finger: 0.5 to 1000 mm/s, 1e-6 to 20 N.
+    /// Returns an error if an axis is empty or has more than 32 different values. Also returns an
+    /// error if a speed is outside 0.5 to 1000 mm/s, or a force is outside 1e-6 to 20 N.
     pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, Error> {
         Ok(Self {
             speeds_mm_s: axis("the speeds", [MIN_SLIDING_MM_S, MOST_SPEED_MM_S], speeds_mm_s)?,

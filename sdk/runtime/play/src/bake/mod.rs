@@ -14,12 +14,13 @@
 //! weighted sum of two filters has the weighted sum of their responses, so the player does not need
 //! the formula of any model.
 //!
-//! Because mixing is linear, a block stores only a few filters, and each condition mixes them. The
-//! model `bands` on the grid of `tests/it/bake_sizes.rs` takes 16 kB; with one filter in single
-//! precision for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR.
-//! But the AR model interpolates line spectral frequencies, so a lattice would have other spectra
-//! between conditions. Where the mixed filters differ from the model by more than the limit in
-//! [`BakeLimits`], conditions are inserted.
+//! Because mixing is linear, a block stores only a few filters, and each condition mixes them. For
+//! example, a block of the model `bands` with the 60 conditions of `tests/it/bake_sizes.rs` takes
+//! 16 kB. The block would take 77 kB if it stored a separate filter in single precision for each
+//! condition. For the AR model, a lattice filter would need less computation. But the AR model
+//! interpolates line spectral frequencies, so the spectra of a lattice filter would differ from the
+//! model's between conditions. Where the mixed filters differ from the model by more than the limit
+//! in [`BakeLimits`], conditions are inserted.
 #![forbid(unsafe_code)]
 
 mod compress;

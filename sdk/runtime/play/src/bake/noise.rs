@@ -1,4 +1,4 @@
-//! Designs the filters of the conditions, each only once.
+//! Designs the noise filters of the conditions. Each filter is designed only once and then cached.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

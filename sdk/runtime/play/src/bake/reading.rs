@@ -1,4 +1,4 @@
-//! Distance between the spectra of baked conditions and the spectra of the model.
+//! Compares the spectra of a baked block with the spectra of the model.
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_host::Band;

@@ -1,4 +1,4 @@
-//! The spectra of all conditions, and their errors.
+//! The spectra and levels of all conditions, and the errors of the spectra.
 
 use std::rc::Rc;
 

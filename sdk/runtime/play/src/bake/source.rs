@@ -131,7 +131,7 @@ pub fn rust_name(stem: &str) -> String {
     identifier(stem).to_ascii_uppercase()
 }
 
-/// Returns whether an array in C and C++ may have this name. A name is a letter, followed by
+/// Returns whether an array in C and C++ may have this name. A valid name is a letter, followed by
 /// letters, digits and single underscores. It must not be a reserved word, such as a keyword.
 ///
 /// ```

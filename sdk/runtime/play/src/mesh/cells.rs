@@ -1,11 +1,11 @@
-//! Chooses one triangulation where several are possible. This happens if conditions lie on one
-//! circle, like the four corners of a cell in a grid.
+//! Chooses one triangulation where several are possible. Several are possible if four or more
+//! conditions lie on one circle, such as the four corners of a cell in a grid.
 //!
 //! Four points on a circle have two Delaunay triangulations. The edge between two triangles is
-//! undecided if the two angles opposite to it sum to half a turn. Triangles joined by undecided
-//! edges form one cell, which is divided into a fan from its first condition. The result depends
-//! neither on the order of the conditions nor on which triangulation was found first, because the
-//! angles do not depend on them.
+//! undecided if the two angles opposite to this edge sum to half a turn. Triangles joined by
+//! undecided edges form one cell. The cell is divided into a fan of triangles from its first
+//! condition. Because the angles do not depend on the order of the conditions, the result does not
+//! depend on it. For the same reason, the result is the same for every initial triangulation.
 
 use std::collections::BTreeMap;
 

@@ -138,8 +138,9 @@ impl SampleSource {
     /// other models. Does not allocate, lock or do I/O if the model keeps to the ABI.
     ///
     /// `at_s` is the time of the motion, in seconds after this source's first sample. This time may
-    /// be earlier than the last rendered sample, because a resampler reads ahead. The position and
-    /// the place are then moved forward by the distance that the finger covers in the difference.
+    /// be earlier than the time of the last rendered sample, because a resampler reads ahead. The
+    /// source then moves the position and the place forward by the distance that the finger covers
+    /// between the two times.
     ///
     /// The speed is negative while the position decreases. An unknown position counts as 0. If the
     /// place is unknown, the model receives a path along x. Numbers are clamped to the ranges of
@@ -216,14 +217,15 @@ impl SampleSource {
     }
 
     /// Fills `out` with the next `frames` samples of each source, one source after another. The
-    /// samples are bit-identical to those from [`Self::render`], but need as few calls of the
-    /// models as possible. In blocks of 256 frames, AR then needs about 60 % of the time. If `out`
-    /// is too short, the remaining sources are not advanced. If it is too long, the rest is filled
-    /// with zeros. Does not allocate, lock or do I/O.
+    /// samples are bit-identical to the samples from [`Self::render`], but the models are called as
+    /// few times as possible. For example, the AR model takes about 60 % of the time in blocks of
+    /// 256 frames. If `out` is too short for all sources, the sources that do not fit are not
+    /// advanced. If `out` is too long, the remaining samples are set to zero. Does not allocate,
+    /// lock or do I/O.
     ///
     /// # Errors
-    /// The first error that a model returns. The samples of this source are then zero, and the
-    /// other sources continue.
+    /// Returns the first error that a model returns. The samples of the failed source are zero, and
+    /// the other sources continue.
     pub fn render_together<'a>(
         sources: impl IntoIterator<Item = &'a mut Self>,
         frames: usize,

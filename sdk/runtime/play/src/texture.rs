@@ -1,7 +1,7 @@
 //! An asset and the models that can play it.
 //!
-//! A model is loaded when one of its representations is first used. So validating, listing or
-//! inspecting an asset runs no module.
+//! A model is loaded when one of its representations is first used. Therefore, validating, listing
+//! or inspecting an asset runs no model.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -82,10 +82,11 @@ impl Texture {
     }
 
     /// Allows embedded models to run, in a sandbox. An embedded model takes precedence over the
-    /// models of the registry. But a plugin that the user loaded by its file name comes first, if
-    /// it can play the representation ([`model_of`]). An embedded model is loaded when a
-    /// representation with its id is first used. This first use returns an error if the module
-    /// cannot be loaded, or if its id or version differs from the declared one.
+    /// models of the registry. There is one exception: a plugin that the user loaded by its file
+    /// name takes precedence over the embedded model if the plugin can play the representation
+    /// ([`model_of`]). An embedded model is loaded when a representation with its id is first used.
+    /// This first use returns an error if the model cannot be loaded, or if its id or version
+    /// differs from the id or version that the asset declares.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -97,7 +98,7 @@ impl Texture {
     ///
     /// # Errors
     /// Returns an error if the asset embeds no model with this id, if the model cannot be loaded,
-    /// or if the model's id or version differs from the declared one.
+    /// or if the model's id or version differs from the id or version that the asset declares.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -209,7 +210,7 @@ impl Texture {
     /// Returns the representations from the best to the worst. Representations that this program
     /// can run come first, then the others. Within each group, representations with a measured
     /// error come first, ordered by [`htex_format::Representation::error_db`] from small to large.
-    /// Ties keep the order of the file.
+    /// Representations with equal errors keep the order of the file.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;

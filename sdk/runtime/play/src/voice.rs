@@ -124,11 +124,11 @@ impl Voice {
     /// rate. The level is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest
     /// recorded level. The voice is silent while the finger does not slide (below 0.5 mm/s or at 0
     /// N). Each of these effects can be switched off ([`Effects`](crate::Effects)).
-    /// [`Self::coverage`] reports how they apply to a motion.
+    /// [`Self::coverage`] reports how these effects apply to a motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
-    /// voice then holds the last valid motion for at most 100 ms. After that, it is silent until
-    /// the next valid motion.
+    /// voice then holds the last valid motion for at most 100 ms. After that, the voice is silent
+    /// until the next valid motion.
     ///
     /// Setting the same motion again costs no time. For a new motion, the voice interpolates
     /// parameters in memory that it already owns. Does not allocate, lock or do I/O if the model
@@ -161,8 +161,8 @@ impl Voice {
     }
 
     /// Returns whether the model follows the motion itself (the extension `htex.motion/1`). The
-    /// model then determines frequencies and level, and the voice scales neither. False for a voice
-    /// that is not streamed.
+    /// model then determines frequencies and level, and the voice scales neither. Returns false for
+    /// a voice that is not streamed ([`Synthesis`](crate::Synthesis)).
     pub fn follows_motion(&self) -> bool {
         self.travel.is_some()
     }
@@ -201,8 +201,9 @@ impl Voice {
 
     /// Returns the magnitudes that a long recording of this voice would show at the current motion.
     /// Frequencies are in hertz, magnitudes in the asset's unit. The magnitudes include the
-    /// effects, the [`ceiling`](VoiceOptions::with_ceiling) and the gain, but not the limiter. A
-    /// gradual change counts as finished. If the voice is silent, all magnitudes are 0.
+    /// effects, the [`ceiling`](VoiceOptions::with_ceiling) and the gain, but not the limiter. If
+    /// the spectrum or level is still changing to the current motion, the magnitudes are those
+    /// after the change. If the voice is silent, all magnitudes are 0.
     ///
     /// # Errors
     /// Returns an error if the model refuses the parameters.
@@ -235,8 +236,9 @@ impl Voice {
     }
 
     /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
-    /// While the voice is silent ([`Self::is_silent`]), this takes hardly any time and the noise
-    /// pauses. When the finger slides again, the noise continues where it stopped.
+    /// While the voice is silent ([`Self::is_silent`]), this function takes hardly any time and
+    /// does not advance the noise. When the finger slides again, the noise continues where it
+    /// stopped.
     ///
     /// # Errors
     /// Returns an error if the model fails. The samples that it did not render are then zero.
@@ -274,7 +276,7 @@ impl Voice {
     }
 
     /// Returns an endless iterator over the next samples, in the asset's unit. The iterator renders
-    /// one sample at a time and none ahead, so the voice later continues after the last sample that
+    /// only the samples that are requested, so the voice later continues after the last sample that
     /// was taken. [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model
     /// fails, the iterator returns the error and then ends.
     ///
@@ -325,15 +327,15 @@ impl Voice {
         result
     }
 
-    /// Returns the envelope of the samples rendered since the last call, or since the start: their
-    /// level and mean frequency. All effects, the gain and the limiter are included. Does not
-    /// allocate, lock or do I/O.
+    /// Returns the level and the mean frequency of the samples rendered since the last call, or
+    /// since the start if this is the first call. These samples include all effects, the gain and
+    /// the limiter. Does not allocate, lock or do I/O.
     ///
     /// Also writes the mean square in each band ([`VoiceOptions::with_envelope_bands`]) to `bands`,
     /// in the square of the asset's unit. `bands` may be empty.
     ///
-    /// The level is exact. The mean frequency and the bands lag by some 20 ms, because they are
-    /// computed from windows of 40 to 80 ms ([`crate::envelope`]).
+    /// The level is exact. The mean frequency and the bands have a delay of about 20 ms, because
+    /// they are computed from windows of 40 to 80 ms ([`crate::envelope`]).
     ///
     /// ```no_run
     /// use htex::{Texture, VoiceOptions};
@@ -352,10 +354,11 @@ impl Voice {
         envelope::read(self.analyser.as_mut(), bands)
     }
 
-    /// Returns the edges of the bands of [`Self::envelope`], hertz. There is one more edge than
-    /// there are bands. The edges are spaced by equal ratios from the lowest to the highest
-    /// frequency of the asset. The first band also includes everything down to 0 Hz, and the last
-    /// band everything up to half the sample rate. Empty if the voice has no bands.
+    /// Returns the edges of the bands of [`Self::envelope`], hertz. The list has one edge more than
+    /// the number of bands, and is empty if the voice has no bands. The ratio between neighbouring
+    /// edges is constant, from the lowest to the highest frequency of the asset. In addition, the
+    /// first band includes all frequencies down to 0 Hz, and the last band all frequencies up to
+    /// half the sample rate.
     pub fn envelope_edges_hz(&self) -> &[f64] {
         self.analyser.as_ref().map_or(&[], Analyser::edges_hz)
     }

@@ -23,10 +23,10 @@ pub enum OpenError {
     NotABlock = 2,
     /// The layout does not have version 1.
     Version = 3,
-    /// The length in the header differs from the length of the block's parts, or the input has
-    /// fewer bytes than this length.
+    /// The length in the header differs from the total length of the block's parts, or the input is
+    /// shorter than the length in the header.
     Length = 4,
-    /// The checksum does not match, so the bytes were changed.
+    /// The checksum does not match, so the bytes were changed after the block was written.
     Checksum = 5,
     /// A number in the header is out of range.
     Header = 6,
@@ -73,7 +73,7 @@ pub enum BlockKind {
     },
 }
 
-/// A baked texture that was validated once, and is read in place.
+/// A baked texture. Its bytes were validated once and are read in place, without a copy.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     kind: BlockKind,
@@ -316,8 +316,8 @@ impl<'a> Block<'a> {
         self.law
     }
 
-    /// Returns the ceiling of the level, in the asset's unit. Beyond the grid, the scaling law does
-    /// not raise the level above it.
+    /// Returns the ceiling of the level, in the asset's unit. Beyond the grid, the scaling law
+    /// raises the level at most to this ceiling.
     pub fn ceiling(&self) -> f32 {
         self.ceiling
     }
@@ -329,8 +329,8 @@ impl<'a> Block<'a> {
     }
 
     /// Returns how many 32-bit numbers the player in C (`c/htex_player.h`) needs for the block. The
-    /// function `htex_player_size` returns the size of these numbers and the struct `htex_player`
-    /// together.
+    /// C function `htex_player_size` returns the size of these numbers plus the size of the struct
+    /// `htex_player`.
     pub fn numbers(&self) -> usize {
         let interpolator = (self.up + 2) * self.row;
         match self.kind {

@@ -9,9 +9,10 @@ const RATIO: (f32, f32) = (MIN_RATIO, MAX_RATIO);
 /// Range of the ratio between a force and the nearest force of the grid: from 2^-20 to 2^20.
 const FORCE_RATIO: (f32, f32) = (1.0 / 1_048_576.0, 1_048_576.0);
 
-/// The exponents of the law that a texture follows beyond its grid. From the nearest motion (v0,
-/// F0) of the grid to a motion (v, F), frequencies change by `(v / v0)^a`, and the level changes by
-/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency, because filters cannot.
+/// The exponents of the law that a texture follows beyond its grid. Let (v, F) be a motion beyond
+/// the grid, and (v0, F0) the nearest motion of the grid. The law multiplies frequencies by
+/// `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. The player changes only the frequencies
+/// of sinusoids, because it cannot change the frequencies of a filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// Exponent a: how frequencies depend on the speed.

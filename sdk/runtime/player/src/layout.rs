@@ -18,18 +18,18 @@ pub const RANDOM_PHASE: u8 = 1;
 pub const MOST_HALF: usize = 320;
 /// Largest number of sinusoids.
 pub const MOST_TONES: usize = 64;
-/// Largest ratio of the sample rate to the internal rate.
+/// Largest ratio of the output's sample rate to the internal rate.
 pub const MOST_UP: usize = 64;
 /// Largest number of interpolator coefficients per phase; always a multiple of four.
 pub const MOST_ROW: usize = 64;
 /// Largest number of filters that the conditions of a noise block mix.
 pub const MOST_FILTERS: usize = 64;
-/// Largest scale of a filter. With this scale, a 16-bit weight times a 16-bit coefficient gives at
-/// most 64.
+/// Largest scale of a filter. With this scale, the scaled product of a 16-bit weight and a 16-bit
+/// coefficient is at most 64.
 pub const MOST_SCALE: f32 = 1.0 / 16_777_216.0;
 /// Largest number of values on an axis of conditions.
 pub const MOST_ON_AXIS: usize = 32;
-/// Longest glide to another motion, samples at the internal rate.
+/// Longest gradual change (glide) to another motion, in samples at the internal rate.
 pub const MOST_GLIDE: u16 = 4096;
 /// Range of the sample rate, hertz.
 pub const RATE_HZ: (f32, f32) = (100.0, 1e6);
@@ -37,11 +37,11 @@ pub const RATE_HZ: (f32, f32) = (100.0, 1e6);
 pub const MOST_VALUE: f32 = 64.0;
 /// Highest level, in the asset's unit.
 pub const MOST_LEVEL: f32 = 1e9;
-/// Highest ceiling of the level and highest full scale, in the asset's unit.
+/// Highest value of the level's ceiling and of the full scale, in the asset's unit.
 pub const MOST_CEILING: f32 = 1e10;
 /// Largest absolute value of an exponent of the law.
 pub const MOST_EXPONENT: f32 = 4.0;
-/// Lowest speed at which a finger slides, mm/s. Below it the player is silent.
+/// Lowest speed at which a finger slides, mm/s. Below this speed the player is silent.
 pub const MIN_SLIDING_MM_S: f32 = 0.5;
 /// Highest speed of a condition, and of a plausible reading, mm/s.
 pub const MOST_SPEED_MM_S: f32 = 1_000.0;
@@ -52,9 +52,9 @@ pub const MOST_FORCE_N: f32 = 20.0;
 /// Time for which the player holds the last plausible motion while readings are not plausible,
 /// seconds.
 pub const HOLD_S: f32 = 0.1;
-/// Lowest ratio between a speed and the nearest speed of the grid, and lowest factor of
-/// frequencies.
+/// Lowest ratio of a speed to the nearest speed of the grid. It is also the lowest factor by which
+/// frequencies change.
 pub const MIN_RATIO: f32 = 0.0625;
-/// Highest ratio between a speed and the nearest speed of the grid, and highest factor of
-/// frequencies.
+/// Highest ratio of a speed to the nearest speed of the grid. It is also the highest factor by
+/// which frequencies change.
 pub const MAX_RATIO: f32 = 8.0;

@@ -1,18 +1,19 @@
 //! Plays baked textures on microcontrollers.
 //!
 //! [`Block::open`] validates the bytes that `htex bake` wrote (`spec/baked-1.md`), and [`Player`]
-//! renders them. There is no heap and no panic. All samples are computed in single precision and in
-//! one fixed order, so they are bit-identical on every processor.
+//! renders them. The code uses no heap and cannot panic. It computes all samples in single
+//! precision and in one fixed order, so they are bit-identical on every processor.
 //!
 //! ```
 //! use htex_player::{Block, OpenError};
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
 //!
-//! To give identical bits, the code fuses no operations, computes cosines, logarithms and powers
-//! with polynomials, and takes the square root from `libm`.
-//! `sdk/runtime/play/tests/it/bake_board.rs` compares the bits of an emulated Cortex-M4F with the
-//! host's. `c/htex_player.c` is the same player in C, with the same bits (`tests/it/c.rs`).
+//! Three rules make the bits identical. The code does not fuse multiplications with additions. It
+//! computes cosines, logarithms and powers with polynomials. It takes the square root from `libm`.
+//! The test `sdk/runtime/play/tests/it/bake_board.rs` compares the samples of an emulated
+//! Cortex-M4F with the host's samples. `c/htex_player.c` is the same player in C and renders
+//! bit-identical samples (`tests/it/c.rs`).
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -87,8 +87,9 @@ impl<'a> Player<'a> {
         &self.block
     }
 
-    /// Returns the RMS that the samples have at the current motion once they have glided to it, in
-    /// the asset's unit. It is 0 if the player is silent or is becoming silent.
+    /// Returns the RMS of the samples at the current motion, in the asset's unit. If the level is
+    /// still changing, this is the level after the change. The RMS is 0 if the player is silent or
+    /// is becoming silent.
     pub fn level(&self) -> f32 {
         self.memory.level
     }
@@ -96,12 +97,12 @@ impl<'a> Player<'a> {
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Returns false,
     /// without a change, if a number is not finite.
     ///
-    /// Spectrum and level glide to the motion. Before the first sample, they are set at once.
-    /// Beyond the grid, the level and the frequencies of sinusoids follow the law of the block,
-    /// starting from the nearest motion of the grid. While the finger does not slide (below 0.5
-    /// mm/s, or without force), the player is silent. A reading above 1000 mm/s or 20 N is not
-    /// plausible: the player holds the last motion for 0.1 s, and is then silent until the next
-    /// plausible reading.
+    /// Spectrum and level change gradually to the new motion. Before the first sample, they change
+    /// at once. Beyond the grid, the level and the frequencies of sinusoids follow the law of the
+    /// block, starting from the nearest motion of the grid. While the finger does not slide (below
+    /// 0.5 mm/s, or without force), the player is silent. A motion above 1000 mm/s or 20 N counts
+    /// as a failed reading of a sensor. The player then holds the last plausible motion for 0.1 s.
+    /// After that, it is silent until the next plausible motion.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;

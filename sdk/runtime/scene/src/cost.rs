@@ -12,17 +12,20 @@ use serde::{Deserialize, Serialize};
 pub struct Costs {
     /// Name of the machine, and how the costs were measured.
     pub machine: String,
-    /// By model id: time to render one sample of a voice at the model's own rate, nanoseconds.
+    /// Time to render one sample of a voice at the model's own rate, nanoseconds, for each model
+    /// id.
     pub model_ns: BTreeMap<String, f64>,
-    /// By model id: time to interpolate two parameter sets and retune a voice, nanoseconds.
+    /// Time to interpolate two parameter sets and change a voice to the result, nanoseconds, for
+    /// each model id.
     pub retune_ns: BTreeMap<String, f64>,
-    /// By stage: time to process one sample at the stage's rate, nanoseconds.
+    /// Time to process one sample at the stage's rate, nanoseconds, for each stage.
     pub stage_ns: BTreeMap<String, f64>,
-    /// By stage: time to process one sample at the stage's rate, nanoseconds, if a scene switches
-    /// the stage on although it changes nothing. Interpolation and crossfades then take no time.
+    /// The same time for each stage that a scene switches on although the stage changes no samples.
+    /// Interpolation and crossfades are not listed, because they take no time in this case.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Time per sample that the renderer itself takes, nanoseconds. The first value is for a scene
-    /// in which nothing changes, the second for a scene whose motion is read before every block.
+    /// Time per sample that the renderer itself takes, nanoseconds. The first value applies to a
+    /// scene in which nothing changes. The second value applies to a scene whose motion is read
+    /// before every block.
     pub renderer_ns: [f64; 2],
     /// Cost of the compensation filter, when a resampler requests short blocks from it.
     pub compensation: FilterCost,

@@ -1,9 +1,9 @@
-//! Checks a scene's device, and combines the scene's settings with the user's, which take
-//! precedence.
+//! Checks a scene's device, and combines the scene's settings with the user's settings. The user's
+//! settings take precedence.
 //!
-//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, a device that
-//! plays newtons, or an electrovibration display, plays an asset of accelerations only if the scene
-//! or the user states a `quantity_gain`.
+//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, consider an asset
+//! of accelerations and a device that plays newtons or an electrovibration display. The device
+//! plays the asset only if the scene or the user states a `quantity_gain`.
 
 use std::collections::BTreeMap;
 
@@ -28,8 +28,8 @@ const DRIVER: &str = "driver";
 /// options.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
-    /// Adapter to use instead of the scene's adapter. If given, the whole `device` of the scene is
-    /// ignored.
+    /// Adapter to use instead of the scene's adapter. If it is given, the scene's whole `device`
+    /// object is ignored.
     pub adapter: Option<String>,
     /// Profile to use instead of the scene's profile.
     pub profile: Option<String>,

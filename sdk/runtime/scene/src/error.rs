@@ -8,8 +8,8 @@ use htex_format::parse_json;
 
 use crate::load::Scene;
 
-/// An error from opening, planning or playing a scene. [`Self::kind`] says what kind of error it
-/// is, without details.
+/// An error from opening, planning or playing a scene. [`Self::kind`] returns the kind of the
+/// error, without details.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -117,7 +117,7 @@ pub enum SceneError {
         /// Why the scene requires it.
         reason: String,
     },
-    /// The model's sample rate cannot be converted to the device's.
+    /// The model's sample rate cannot be converted to the device's sample rate.
     #[error(transparent)]
     Rates(#[from] htex_dsp::resample::UnusableRates),
     /// The motion is invalid: a number is not finite, or the force is negative.

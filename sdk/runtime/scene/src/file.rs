@@ -29,8 +29,8 @@ pub struct SceneFile {
     /// The output device. Default: the adapter `file`, which writes newtons.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Duration, seconds. By default, a trace determines the duration, and other motions are
-    /// endless.
+    /// Duration, seconds. By default, a scene with a trace is as long as its trace, and a scene
+    /// with another motion is endless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
@@ -80,7 +80,7 @@ impl Surface {
     }
 }
 
-/// A rectangle. It includes its lower edges and excludes its upper edges.
+/// A rectangle. Its lower edges (smallest x and y) belong to it, but its upper edges do not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Region {
@@ -115,8 +115,8 @@ pub struct Constant {
     /// Normal force, newtons.
     #[schemars(range(min = 0, max = 1e3))]
     pub force_n: f64,
-    /// Start position, x and y, mm. It may be missing only if the scene has a single surface
-    /// without a region.
+    /// Start position, x and y, mm. Required unless the scene has a single surface and this surface
+    /// has no region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
     pub from_mm: Option<[f64; 2]>,
@@ -147,18 +147,20 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
-    /// Device units per unit of the assets' quantity. For example, with 0.1 a device of newtons
-    /// plays an acceleration of 1 m/s2 as 0.1 N. Required if the two quantities differ; without it,
+    /// Conversion factor from the assets' quantity to the device's quantity. For example, with a
+    /// factor of 0.1, a device that plays newtons plays an acceleration of 1 m/s2 as 0.1 N. The
+    /// factor is required if the assets' quantity differs from the device's. Without the factor,
     /// such assets are refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub quantity_gain: Option<f64>,
-    /// Largest voltage of an electrovibration drive, volts: sqrt(2) times V_g of the paper.
-    /// Default: half of the device's limit.
+    /// Largest voltage of an electrovibration drive, volts: sqrt(2) times the paper's V_g. Default:
+    /// half of the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
-    /// RMS level of a preview by ear, decibels relative to full scale (at most 0). Default: -18.
+    /// RMS level of a preview that is played as sound, decibels relative to full scale (at most 0).
+    /// Default: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
@@ -166,9 +168,9 @@ pub struct DeviceChoice {
     /// a reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// If `levels` is `own`: the RMS that is mapped to the drive voltage or the preview level, in
-    /// the assets' unit. Default: the RMS of the strongest representation of all surfaces that the
-    /// finger touches.
+    /// The reference level, which is used if `levels` is `own`: the RMS that is mapped to the drive
+    /// voltage or the preview level, in the assets' unit. Default: the RMS of the strongest
+    /// representation of all surfaces that the finger touches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
@@ -176,13 +178,13 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
-    /// Frequency response of finger and display, which the scene compensates: the path of a CSV
-    /// file with the columns `frequency_hz`, `magnitude`. Relative paths start at the scene's
-    /// folder.
+    /// Path of a CSV file with the frequency response of the finger on the display, which the scene
+    /// compensates. The columns of the file are `frequency_hz` and `magnitude`. Relative paths
+    /// start at the scene's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// Depth of the compensation, decibels: how far below its maximum the response is still
-    /// compensated.
+    /// Depth of the compensation, decibels. Where the response is farther below its maximum than
+    /// this depth, it is not compensated fully.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,
@@ -192,12 +194,12 @@ pub struct DeviceChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
-    /// The scene's loudest texture, in the representation that plays it, gets the drive voltage or
-    /// the preview level. A texture is then equally strong in every representation.
+    /// The drive voltage or the preview level applies to the scene's loudest texture, in the
+    /// representation that plays it. A texture is therefore equally strong in every representation.
     #[default]
     Normalised,
-    /// A reference level gets the drive voltage or the preview level, whichever representation
-    /// plays. Each representation keeps its own energy.
+    /// The drive voltage or the preview level applies to the reference level, whichever
+    /// representation plays the texture. Each representation therefore keeps its own energy.
     Own,
 }
 
@@ -207,8 +209,8 @@ impl Levels {
     }
 }
 
-/// Limits for choosing representations. If both limits are set, the planner chooses the
-/// representation with the smallest error that meets both.
+/// Limits for choosing representations. If both limits are set, the planner chooses among the
+/// representations that meet both limits. It takes the representation with the smallest error.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
@@ -220,7 +222,7 @@ pub struct Budget {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub max_error_db: Option<f64>,
-    /// The error measure that `max_error_db` limits and the choice minimises.
+    /// The error measure that `max_error_db` limits and that the planner minimises.
     #[serde(default, skip_serializing_if = "is_default")]
     pub error: ErrorMeasure,
 }
@@ -237,25 +239,27 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 pub enum Effect {
     /// Interpolation of parameters and level between recorded conditions as speed and force change.
     Interpolation,
-    /// Scaling of frequencies with the speed outside the recorded speeds. It follows the asset's
-    /// scaling law.
+    /// Scaling of frequencies with the speed, by the asset's scaling law, at speeds outside the
+    /// recorded speeds.
     FrequencyScaling,
-    /// Scaling of the level with speed and force outside the recorded motions. It follows the
-    /// asset's scaling law.
+    /// Scaling of the level with speed and force, by the asset's scaling law, at motions outside
+    /// the recorded motions.
     LevelScaling,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
-    /// Compensation of the response of finger and display.
+    /// Compensation of the frequency response of the finger on the display.
     Compensation,
     /// Conversion from the rate of the models to the rate of the device.
     Resampling,
-    /// Sign of the force, opposite to the stroke.
+    /// Change of the sign of the force with the direction of the stroke.
     Direction,
     /// Conversion from newtons to the device's quantity.
     Gain,
-    /// Shift and square root, because friction is proportional to the square of a voltage.
+    /// Shift and square root of the samples, for an electrovibration display, whose friction is
+    /// proportional to the square of the voltage.
     SquareRoot,
-    /// Silence without contact or slip, and at the start and end.
+    /// Silence while the finger does not touch or slide, and fades at the start and the end of the
+    /// scene.
     Contact,
     /// Amplitude modulation on a carrier.
     Carrier,
@@ -314,7 +318,7 @@ pub enum Switch {
     /// The planner includes the effect if the scene requires it.
     #[default]
     Auto,
-    /// The effect is always included. If the scene does not require it, it changes no samples.
+    /// The effect is always included, but it changes no samples if the scene does not require it.
     On,
     /// The effect is never included.
     Off,

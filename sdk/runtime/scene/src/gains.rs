@@ -1,10 +1,11 @@
-//! Drive voltages for each person, texture and device. They are V_g of the paper, found by
-//! adjustment. They are stored in a file of the user.
+//! Drive voltages (gains), one for each combination of a person, a texture and a device. Each
+//! person adjusts the voltage (the paper's V_g) by feeling the texture. The voltages are stored in
+//! a file in the user's configuration folder.
 //!
-//! A gain belongs to a texture, not to a file. Its key contains the texture's name and author,
-//! because they stay the same after a new fit. A hash of the recordings would change with one more
-//! recording. The gain stores the RMS at which it was found, so that other representations keep
-//! their energies.
+//! A gain belongs to a texture, not to a file. The key of a gain contains the texture's name and
+//! author, because name and author stay the same after a new fit. A hash of the recordings would
+//! change if a recording were added. The gain stores the RMS at which the voltage was adjusted, so
+//! that other representations keep their energies.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,8 +17,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Level at which the adjustment of a gain starts, decibels relative to the maximum. It is a tenth
-/// of the maximum voltage, and rises only when the person asks for more.
+/// Level at which the adjustment of a gain starts, decibels relative to the maximum. -20 dB is a
+/// tenth of the maximum voltage. The voltage rises only when the person increases it.
 pub const START_DB: f64 = -20.0;
 
 /// Converts decibels to an amplitude factor.
@@ -33,8 +34,8 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
-    /// Identifier of the texture ([`texture_id`]). Empty in legacy entries, which have a hash
-    /// instead.
+    /// Identifier of the texture ([`texture_id`]). It is empty in legacy entries, which identify
+    /// the texture by the hash of a file.
     #[serde(default)]
     pub texture: String,
     /// Id of the device's adapter.
@@ -50,7 +51,7 @@ pub struct Gain {
     /// Person, texture and device.
     #[serde(flatten)]
     pub key: GainKey,
-    /// Name of the file with which the gain was adjusted, for display.
+    /// Name of the file that was played when the gain was adjusted. The name is only displayed.
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -60,7 +61,8 @@ pub struct Gain {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
-    /// Names of the texture's recordings. They distinguish textures with the same name.
+    /// Names of the texture's recordings. These names distinguish textures with the same name and
+    /// author.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,
     /// BLAKE3 hash of the asset or scene, hexadecimal. Legacy entries use it as their identifier.
@@ -82,8 +84,9 @@ pub fn gains_schema() -> Value {
 }
 
 /// Returns the identifier of a texture: its name and, if present, its author, both normalised by
-/// [`texture_name`]. All assets of the texture share it, whenever and however they were fitted. For
-/// several textures that are played together, the identifier contains all of them in order.
+/// [`texture_name`]. All assets of the texture have the same identifier, no matter when and how
+/// they were fitted. If several textures are played together, the identifier is the sorted list of
+/// their identifiers, joined by ` + `.
 pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> String {
     let id = |texture: &Manifest| match texture.author.as_deref().map(texture_name) {
         Some(author) if !author.is_empty() => {
@@ -101,7 +104,7 @@ pub fn texture_name(name: &str) -> String {
     words.join(" ")
 }
 
-/// Returns the names of the textures' recordings, in order.
+/// Returns the names of the textures' recordings, sorted and without duplicates.
 pub fn recordings_of<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Vec<String> {
     let recordings = textures.into_iter().flat_map(|t| &t.provenance.recordings);
     let names: BTreeSet<String> = recordings.map(|source| source.file.clone()).collect();
@@ -119,12 +122,12 @@ impl Gains {
 
     /// Returns the path of the user's file of gains. It is `gains.json` in the folder
     /// `$HTEX_CONFIG_DIR` if this variable is set, otherwise in the folder `htex` in the user's
-    /// configuration folder. `None` if there is no configuration folder.
+    /// configuration folder. Returns `None` if there is no configuration folder.
     pub fn user_file() -> Option<PathBuf> {
         htex_host::folders::config().map(|folder| folder.join("gains.json"))
     }
 
-    /// Reads a gains file. If the file is missing, there are no gains.
+    /// Reads a gains file. If the file is missing, the result has no gains.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, is too large, or is not a gains file. Also
@@ -181,15 +184,15 @@ impl Gains {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// Returns the gain for a key. If there is none, returns the legacy entry for the same person,
-    /// the same device and a file with this hash.
+    /// Returns the gain for a key. If there is no such gain, returns the legacy entry for the same
+    /// person, the same device and a file with this hash.
     pub fn find(&self, key: &GainKey, blake3: &str) -> Option<&Gain> {
         let exact = self.gains.iter().find(|gain| gain.key == *key);
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))
     }
 
-    /// Inserts a gain. Removes an earlier gain with the same key, and the legacy entry for a file
-    /// with this hash.
+    /// Inserts a gain. The new gain replaces an earlier gain with the same key, and a legacy entry
+    /// for the same person, the same device and a file with this hash.
     pub fn put(&mut self, gain: Gain, blake3: &str) {
         let replaced = |other: &Gain| other.key == gain.key || other.is_of_old(&gain.key, blake3);
         self.gains.retain(|other| !replaced(other));

@@ -22,14 +22,15 @@ use crate::trace::Trace;
 use crate::validate::read_scene;
 use crate::{Costs, Renderer, SceneError};
 
-/// What a program provides for opening a scene: the models that may play it, and the devices on
-/// which it may play.
+/// What a program provides for opening a scene: the models that may play the scene's textures, and
+/// the devices on which the scene may play.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
     pub models: &'a Registry,
     /// Whether models embedded in assets may run (in their sandbox).
     pub embedded: bool,
-    /// `None` if the program takes the samples itself. The scene's device is then ignored.
+    /// The devices on which the scene may play. `None` means that the program takes the samples
+    /// itself, so that the scene's device is ignored.
     pub devices: Option<&'a Devices>,
 }
 
@@ -77,7 +78,7 @@ pub struct Scene {
     pub assets: Vec<Texture>,
     /// The motion, if it is a trace.
     pub trace: Option<Trace>,
-    /// The response to compensate.
+    /// The frequency response to compensate, if the scene names one.
     pub response: Option<Response>,
     /// The device's settings, for querying and opening it.
     pub settings: Settings,
@@ -92,8 +93,8 @@ const RATES_HZ: Rates = Rates::Range { min_hz: 100.0, max_hz: 1e6 };
 
 impl Scene {
     /// Opens a scene file and the files it names, for a program that takes the samples itself. The
-    /// built-in and the embedded models play the textures. The scene's device is ignored. The scene
-    /// must keep to the default [`Limits`].
+    /// built-in and the embedded models play the textures. The scene's device is ignored. A scene
+    /// beyond the default [`Limits`] is an error.
     ///
     /// # Errors
     /// [`SceneError::Io`] if the file cannot be read. [`SceneError::Invalid`] with all findings if
@@ -131,7 +132,8 @@ impl Scene {
         Self::read(bytes, &Place::Folder(folder(path)), around, device)
     }
 
-    /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
+    /// Opens a scene in memory whose files the program supplies. The field `folder` of the result
+    /// is empty.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::open`].
@@ -236,7 +238,7 @@ impl Scene {
     }
 }
 
-/// The hint of a finding that goes away if embedded models are allowed to run
+/// The hint of findings that disappear if embedded models are allowed to run
 /// ([`Surroundings::embedded`]).
 pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
 

@@ -7,7 +7,8 @@ const LONGEST_ENDING: usize = 8;
 
 /// Returns the default output file of a scene or an asset: its name with the extension of the
 /// format. The extension is `wav` if the format is `auto` or not a plain word. The result is always
-/// a plain file name, so the file is in the current folder. It never names a hidden file.
+/// a plain file name, so the file is in the current folder. The name never begins with a dot, so
+/// the file is not hidden.
 ///
 /// ```
 /// # use htex_scene::output_name;

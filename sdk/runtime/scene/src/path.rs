@@ -1,9 +1,9 @@
 //! Position of the finger along its path, for models that follow the motion themselves. The
-//! position increases in the direction of the first stroke and decreases against it, so a place has
-//! the same position on forward and back strokes.
+//! position increases in the direction of the first stroke and decreases in the opposite direction.
+//! Therefore, a place on the surface has the same position on forward and back strokes.
 //!
-//! For a trace, the position is the integral of the smoothed velocity, because the positions that
-//! trackers record change in steps.
+//! For a trace, the position is the integral of the smoothed velocity. The recorded positions are
+//! not used directly, because the positions from a tracker change in steps.
 
 use htex_play::Motion;
 

@@ -24,19 +24,20 @@ pub struct Plan {
     pub left_out: Vec<OmittedEffect>,
     /// The representation of each surface that the finger touches.
     pub representation: Vec<ModelChoice>,
-    /// Time that the renderer itself takes, without the stages, nanoseconds per sample.
+    /// Time that the renderer takes in addition to its stages, nanoseconds per sample.
     pub renderer_ns: f64,
     /// Total cost of the stages and the renderer, nanoseconds per sample.
     pub ns_per_sample_total: f64,
-    /// Whether nothing changes while the scene plays. Stages are then not updated between blocks.
+    /// True if nothing changes while the scene plays, so that stages are not updated between
+    /// blocks.
     pub constant: bool,
     /// Rate of the device, hertz.
     pub rate_hz: f64,
-    /// Frames in a control block, the interval at which the motion is read.
+    /// Number of frames in a control block. The renderer reads the motion once per control block.
     pub block_frames: usize,
     /// Length of the scene, frames. `None` if it is endless.
     pub frames: Option<u64>,
-    /// Where the costs come from.
+    /// The machine on which the costs were measured.
     pub costs: String,
     /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the
     /// assets' unit.

@@ -1,4 +1,4 @@
-//! A surface that a chosen representation plays: its rates, its constant factors and its level.
+//! A surface with its chosen representation: the sample rates, the constant factors and the level.
 
 use std::sync::Arc;
 

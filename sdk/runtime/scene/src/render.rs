@@ -148,8 +148,8 @@ impl Renderer {
     /// finger has no contact until the next valid motion.
     ///
     /// # Errors
-    /// [`SceneError::Motion`] if a number is not finite or the force is negative. This also counts
-    /// as a failed reading.
+    /// [`SceneError::Motion`] if a number is not finite or the force is negative. Such a motion
+    /// also counts as a failed reading.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), SceneError> {
         // An invalid reading is also stored, so that `Readings` sees the failure.
         self.live = motion;
@@ -186,9 +186,9 @@ impl Renderer {
     /// is zero. The samples do not depend on the length of `out`.
     ///
     /// # Errors
-    /// The first failure of a model since the last call. `out` is filled nevertheless: the surface
-    /// of the failed model is silent, and the other surfaces continue. The caller may continue to
-    /// render.
+    /// Returns the first error of a model since the last call. Even then, `out` is filled: the
+    /// surface of the failed model is silent, and the other surfaces continue. The caller may
+    /// continue to render.
     pub fn render(&mut self, out: &mut [f32]) -> Result<usize, SceneError> {
         let frames = if self.follows { self.render_blocks(out) } else { self.render_ahead(out) };
         self.failure().map_or(Ok(frames), Err)
@@ -308,8 +308,8 @@ impl Renderer {
     }
 
     /// Returns the largest absolute sample so far, in the unit of the device. If the motion is
-    /// constant, up to 1,024 samples are rendered ahead. This value and the counts of limited and
-    /// rooted samples include them.
+    /// constant, the renderer renders up to 1,024 samples ahead. This maximum includes those
+    /// samples, and so do [`Self::limited_samples`] and [`Self::rooted_samples`].
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
@@ -319,8 +319,8 @@ impl Renderer {
         self.statistics().limited
     }
 
-    /// Returns the number of samples whose radicand was negative and was set to zero. Only an
-    /// electrovibration display needs this square root.
+    /// Returns the number of samples for which the radicand of the square root was negative and was
+    /// set to zero. Only scenes for electrovibration displays have a square root.
     pub fn rooted_samples(&self) -> u64 {
         self.statistics().rooted
     }

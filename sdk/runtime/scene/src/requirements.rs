@@ -1,4 +1,4 @@
-//! The requirements of a scene. They are gathered from the scene, its assets and its device before
+//! The requirements of a scene. They are derived from the scene, its assets and its device before
 //! any stage is built.
 
 use htex_device::{Capabilities, Quantity};

@@ -1,4 +1,4 @@
-//! The frequency response of finger and display, and its compensation.
+//! The frequency response of the finger on the display, and the compensation of this response.
 
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! All rules for scenes, in one table.
 //!
-//! Some rules are stricter for a scene than for an asset. A misspelt key has no effect in an asset,
-//! so it only gets a warning. In a scene it would change what is felt, so the scene is refused. A
-//! scene may come from anyone, so it must name neither a driver nor a file to write outside its
-//! folder.
+//! Some rules are stricter for a scene than for an asset. In an asset, a misspelt key has no
+//! effect, so the reader only warns. In a scene, a misspelt key would change what is felt, so the
+//! reader refuses the scene. Because a scene may come from an untrusted source, it must not name a
+//! driver, or an output file outside its own folder.
 
 htex_base::finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:

@@ -1,7 +1,8 @@
 //! A recorded motion (trace), which can be interpolated at any time.
 //!
-//! The speed is the second difference of the position's integral. For a steady motion, it is exact
-//! with any spacing of the rows. It is insensitive to the steps of a 60 Hz tracker.
+//! The speed is computed from the integral of the position, as its second difference
+//! ([`velocity`]). The speed of a steady motion is exact, however the rows are spaced. The steps of
+//! a 60 Hz tracker have little influence on the result.
 
 use std::path::Path;
 
@@ -23,12 +24,12 @@ pub struct Trace {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, not negative. If the trace has a speed column, the speed is taken from
-    /// it. Otherwise it is computed from the velocity.
+    /// Sliding speed, mm/s, not negative. If the trace has a speed column, the speeds are taken
+    /// from this column. Otherwise they are computed from the velocity.
     pub speed_mm_s: Vec<f64>,
     /// Velocity along x and y, mm/s, computed from the positions.
     pub velocity_mm_s: Vec<[f64; 2]>,
-    /// Assumptions made while reading.
+    /// Warnings of the reader, such as assumed units.
     pub warnings: Vec<String>,
 }
 
@@ -50,8 +51,8 @@ pub struct TracePoint {
 }
 
 impl Trace {
-    /// Reads a trace from a CSV file with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if
-    /// known, `speed_mm_s`.
+    /// Reads a trace from a CSV file with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and
+    /// optionally `speed_mm_s`.
     ///
     /// # Errors
     /// Returns the same errors as [`read_trace`].
@@ -70,11 +71,13 @@ impl Trace {
     /// Makes a trace from columns.
     ///
     /// [`velocity`] computes the velocity. A constant velocity is exact, and the steps of a 60 Hz
-    /// tracker have little influence. Negative forces, which a sensor's offset causes, become 0.
+    /// tracker have little influence. Negative forces, which an offset of the sensor can cause,
+    /// become 0.
     ///
     /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last valid row for at most 100
-    /// ms. After that, they have no contact. They are replaced here, before interpolation, because
-    /// a value interpolated halfway to an impossible row may look valid.
+    /// ms. After these 100 ms, impossible rows become rows without contact. This happens before
+    /// interpolation, because a value interpolated between a valid and an impossible row may look
+    /// valid.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();

@@ -27,8 +27,9 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a scene, and checks everything that can be checked without its files and its device. If
-/// the scene cannot be used, adds a finding with the reason and returns `None`. Never panics.
+/// Reads a scene, and checks everything that can be checked without opening the scene's files and
+/// device. If the scene cannot be used, adds a finding with the reason and returns `None`. Never
+/// panics.
 pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<SceneFile> {
     if bytes.len() as u64 > limits.file_bytes {
         let message = format!("the scene has more than {} bytes", limits.file_bytes);

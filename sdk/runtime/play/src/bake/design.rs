@@ -59,8 +59,8 @@ pub struct BakeResult {
     pub quantity: Quantity,
     /// The scaling law that the texture follows when the motion is beyond the grid.
     pub law: Law,
-    /// Highest level, in the asset's unit, to which the scaling law may raise the texture beyond
-    /// the grid.
+    /// Ceiling of the level, in the asset's unit: beyond the grid, the scaling law raises the level
+    /// at most to the ceiling.
     pub ceiling: f64,
     /// A magnitude that samples rarely exceed while the motion is within the grid.
     pub full_scale: f64,

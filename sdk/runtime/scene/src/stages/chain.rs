@@ -1,7 +1,7 @@
 //! A chain of stages, with counts and times for each stage.
 //!
-//! A stage requests the samples it needs from its source. So a rate converter is a stage like any
-//! other, and the samples are the same for all block sizes.
+//! Each stage requests the samples that it needs from the stage before it. Therefore, a rate
+//! converter needs no special treatment, and the samples are the same for all block sizes.
 
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
-//! Compensates the response of finger and display, so that the friction on the finger has the
-//! texture's spectrum. The gain is 1/|H| where |H| is large. The depth of the compensation limits
-//! it where |H| is small.
+//! Compensates the frequency response H of the finger on the display, so that the friction on the
+//! finger has the texture's spectrum. At frequencies where |H| is large, the gain is 1/|H|. Where
+//! |H| is small, the depth of the compensation limits the gain.
 
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;

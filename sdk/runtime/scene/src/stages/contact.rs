@@ -1,5 +1,5 @@
 //! Silences the output while the finger has no contact or does not slide. On a device that people
-//! touch or hear, also fades at the start and the end of a scene.
+//! touch or hear, this stage also fades in at the start and fades out at the end of a scene.
 
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;

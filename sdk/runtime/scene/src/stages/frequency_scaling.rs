@@ -1,5 +1,5 @@
-//! Outside the recorded speeds, scales frequencies with the scanning speed, by the asset's scaling
-//! law.
+//! Scales frequencies with the scanning speed, by the asset's scaling law, if the speed is outside
+//! the recorded speeds.
 
 use std::sync::Arc;
 

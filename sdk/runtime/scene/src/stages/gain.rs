@@ -1,5 +1,6 @@
-//! Converts samples from the textures' unit to the device's: by a stated gain, to the level of a
-//! preview by ear, or to the radicand of a drive voltage.
+//! Converts samples from the textures' unit to the device's. The result is in the device's physical
+//! unit (by a stated gain), at the level of a preview that is played as sound, or the radicand of a
+//! drive voltage.
 
 use htex_device::Quantity;
 

@@ -1,5 +1,5 @@
 //! Interpolation of parameters and level between recorded conditions as speed and force change.
-//! This stage retunes the voice, so no samples pass through it.
+//! This stage changes the parameters of the voice, so no samples pass through it.
 
 use htex_play::Interval;
 

@@ -1,5 +1,5 @@
-//! Outside the recorded motions, scales the level with speed and normal force, by the asset's
-//! scaling law.
+//! Scales the level with speed and normal force, by the asset's scaling law, if the motion is
+//! outside the recorded motions.
 
 use std::sync::Arc;
 

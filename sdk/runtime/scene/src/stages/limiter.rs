@@ -1,5 +1,5 @@
-//! Clips samples at the device's limit and at the drive of a display. Clipped samples are counted,
-//! and NaN becomes zero.
+//! Clips samples at the device's limit and, for an electrovibration display, at the drive voltage.
+//! The stage counts clipped samples and replaces NaN by zero.
 
 use htex_device::Quantity;
 

@@ -1,12 +1,14 @@
 //! The stages of a chain: one file per effect, with the condition under which the effect is needed.
 //!
-//! A constant effect needs no stage: a constant frequency factor becomes part of the resampler's
-//! ratio, and a constant level factor part of the level. Linear effects of a texture run at the
-//! model's rate, before the resampling. Only frequency scaling reads its input at a changing ratio.
+//! A constant effect needs no stage. A constant frequency factor becomes part of the resampler's
+//! ratio, and a constant level factor becomes part of the level. Linear effects of a texture run at
+//! the model's rate, before resampling. Frequency scaling is the only stage whose ratio of input
+//! samples to output samples changes.
 //!
-//! A scene may force an effect on that is not needed. Such an effect is neutral: it changes no bit
-//! of the samples, or it changes them by at most 1e-6 of full scale
-//! (`sdk/runtime/scene/tests/it/equivalence.rs`). So leaving it out is only an optimisation.
+//! A scene may switch on an effect that is not needed. Such an effect changes the samples by at
+//! most 1e-6 of full scale, and most such effects change no bit
+//! (`sdk/runtime/scene/tests/it/equivalence.rs`). Therefore, leaving out an effect that is not
+//! needed only saves time.
 
 mod carrier;
 mod chain;

@@ -1,5 +1,5 @@
-//! Converts the rate of the models to the rate of the device, once for all surfaces with the same
-//! rate.
+//! Converts samples from the models' rate to the device's rate. Surfaces with the same rate are
+//! added first and converted together.
 
 use htex_dsp::resample::{Resampler, UnusableRates, Work};
 

@@ -1,9 +1,11 @@
-//! Shift and square root. The friction that an electrovibration display adds is proportional to the
-//! square of its voltage, so the voltage is V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper,
-//! under "Electrovibration rendering", prints min|y| instead, which allows negative radicands.)
+//! Shift and square root of the samples. The friction that an electrovibration display adds is
+//! proportional to the square of its voltage, so the voltage is V = V_g sqrt(y + |min y|) cos(2 pi
+//! f_c t). (The paper, under "Electrovibration rendering", prints min|y| instead, which allows
+//! negative radicands.)
 //!
-//! The minimum of a stream is not known in advance, so the shift is [`HEADROOM`] times the RMS of
-//! the scene's loudest surface. Radicands that are still negative are set to zero and counted.
+//! The minimum of a stream is not known in advance. Therefore, [`HEADROOM`] times the RMS of the
+//! scene's loudest surface is used as the shift |min y|. Radicands that are still negative are set
+//! to zero and counted.
 //!
 //! The shift does not follow the actual minimum, because changes of the shift would be felt.
 

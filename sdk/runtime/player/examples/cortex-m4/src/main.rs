@@ -1,8 +1,8 @@
-//! Plays the block at [`BLOCK`] with the tests' script of motions. Prints a hash of the samples and
-//! the number of instructions per sample.
+//! Plays the block at [`BLOCK`] with the same sequence of motions as the tests. The program prints
+//! a hash of the samples and the number of instructions per sample.
 //!
-//! `docs/microcontroller.md` has the commands. `sdk/runtime/play/tests/it/bake_board.rs` compares the hash
-//! with the host's.
+//! `docs/microcontroller.md` has the commands. `sdk/runtime/play/tests/it/bake_board.rs` compares
+//! the hash with the hash that the host computes.
 #![no_std]
 #![no_main]
 

@@ -1,8 +1,9 @@
 //! Estimation of the filter coefficients.
 //!
 //! The fit has no resonance narrower than a bin, because the spectrum cannot show such a resonance.
-//! For a tone, Yule–Walker finds one. Its voice would take hours to reach its level, and the bins
-//! would misread it by tens of decibels.
+//! For a tone, the Yule–Walker method alone finds a narrower resonance. A voice with such a
+//! resonance would take hours to reach its level, and its spectrum, read at the bins, would be
+//! wrong by tens of decibels.
 
 use alloc::vec::Vec;
 

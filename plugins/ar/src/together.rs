@@ -1,4 +1,4 @@
-//! Renders four voices side by side, which is faster than one after another.
+//! Renders four voices at the same time, which is faster than rendering one voice after another.
 //!
 //! The operations and their order are the same as for one voice, so the samples are bit-identical.
 

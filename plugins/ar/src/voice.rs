@@ -10,8 +10,8 @@ use htex_model::{Error, Values, Voice};
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, together};
 
 /// An all-pole filter whose reflection coefficients move linearly to target values. A filter is
-/// stable if all its reflection coefficients are inside (-1, 1). So if both filters are stable,
-/// every filter on the way is also stable.
+/// stable if all its reflection coefficients are inside (-1, 1). Therefore, if the filters before
+/// and after the change are stable, every filter in between is also stable.
 pub struct MovingPoles {
     pub(crate) poles: AllPole,
     target: [f64; MAX_ORDER],

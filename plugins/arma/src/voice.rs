@@ -1,7 +1,7 @@
 //! The voice: white noise through the zeros, then through the poles.
 //!
 //! When parameters change, the coefficients of the zeros and the reflection coefficients of the
-//! poles move linearly to their new values. So every filter on the way is stable.
+//! poles move linearly to their new values. Therefore, every filter during the change is stable.
 
 use alloc::boxed::Box;
 
@@ -15,7 +15,7 @@ use htex_model::{Error, Values};
 use crate::filter::Filter;
 use crate::{MAX_ORDER, MODEL_RATE};
 
-/// A filter with zeros and poles that move.
+/// A filter whose zeros and poles move to target values.
 pub struct MovingZerosAndPoles {
     zeros: AllZero,
     poles: AllPole,

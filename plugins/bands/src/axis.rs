@@ -18,11 +18,11 @@ const EDGES_FROM: usize = 20;
 /// Distribution of the knots over the band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
-    /// Equally spaced in the logarithm of the frequency, inside the band. The knots are the apexes
-    /// of half-overlapping triangles. The outermost triangles end at the edges of the band (section
-    /// "Linear regression" of the paper).
+    /// Knots inside the band, equally spaced in the logarithm of the frequency. The knots are the
+    /// apexes of half-overlapping triangles. The outermost triangles end at the edges of the band
+    /// (section "Linear regression" of the paper).
     Within,
-    /// From edge to edge, equally spaced in `ln(f + 20 Hz)`.
+    /// Knots from edge to edge of the band, equally spaced in `ln(f + 20 Hz)`.
     Edges,
 }
 

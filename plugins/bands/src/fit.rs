@@ -1,24 +1,25 @@
-//! Fit of the knots to the band energies of a recording.
+//! Fit of the knots of the stored curve to the band energies of a recording.
 //!
-//! The cost has two terms. For the first term, each band contributes the squared logarithm of its
-//! fitted energy divided by its wanted energy. For the second term, each knot contributes 1e-4
-//! times the squared distance from its band's mean level, in the logarithm of power. The fit meets
-//! the energies of noise to a hundredth of a decibel. The second term determines the solution in
-//! two cases: if no spectrum has the wanted energies, or if the knots of the only such spectrum
-//! differ by hundreds of decibels, as happens next to a line.
+//! The cost has two terms. The first term is a sum over bands of the squared logarithm of the ratio
+//! of fitted energy to wanted energy. The second term is a sum over knots of 1e-4 times the squared
+//! distance between the knot and its band's mean level, in the logarithm of power. For noise, the
+//! fitted energies are within a hundredth of a decibel of the wanted energies. The second term
+//! determines the solution in two cases. In the first case, no spectrum has the wanted energies. In
+//! the second case, only one spectrum has them, and its knots differ by hundreds of decibels, as
+//! happens next to a line.
 //!
 //! The solution is the spectrum with the largest entropy among all spectra with the recording's
-//! energies. It is found with the method of Levenberg and Marquardt. Files store the curve, not the
-//! energies, so a player does not have to solve equations. Only the fit has to deal with energies
-//! that no spectrum has. (Rounding can cause such energies, because bands share bins.) The
-//! measuring window blurs a spectrum, so the voice's spectrum is sharpened until it measures as
-//! stated.
+//! energies. The fit finds this spectrum with the Levenberg–Marquardt method. Files store the
+//! curve, not the energies, so a player does not have to solve equations. Only the fit has to deal
+//! with energies that no spectrum has. (Rounding can cause such energies, because bands share
+//! bins.) The window of a measurement blurs the spectrum. Therefore, the voice's spectrum is
+//! sharpened until a measurement shows the stated spectrum.
 //!
-//! We compared this fit with a maximum-likelihood fit to the bins (Whittle: minimises the sum of
-//! `ln S + P / S`), computed in Python. Both were tested on held-out data: 32 third-party
-//! recordings were cut into pieces of 0.2 s. The first, third, ... pieces were used for the fit and
-//! the other pieces for the test, then the reverse. Knots were in steps of 1 dB. Roughness is a
-//! penalty on second differences of the logarithm of power.
+//! We compared this fit with a maximum-likelihood fit to the bins, computed in Python (Whittle's
+//! method, which minimises the sum of `ln S + P / S`). We tested both fits on held-out data, from
+//! 32 third-party recordings that were cut into pieces of 0.2 s. First, the odd-numbered pieces
+//! were used for the fit and the even-numbered pieces for the test, and then the reverse. Knots
+//! were in steps of 1 dB. Roughness is a penalty on second differences of the logarithm of power.
 //!
 //! | fit, knots | third octaves, dB | log-spectral distance, dB |
 //! |---|---|---|
@@ -28,9 +29,10 @@
 //! | likelihood, 40 | 2.24 | 2.93 |
 //! | likelihood, 40, roughness 0.1 | 2.20 | 2.88 |
 //!
-//! Likelihood improves the errors by at most 4 %, with a third more knots. On 15 simulated
-//! recordings, the improvement is at most 2 %. For comparison, the spectra of the two halves of a
-//! recording differ from each other by 2.23 dB and 3.22 dB.
+//! The maximum-likelihood fit improves the errors by at most 4 %, and needs a third more knots to
+//! do this. On 15 simulated recordings, the improvement is at most 2 %. For comparison, the spectra
+//! of the two halves of a recording differ from each other by 2.23 dB in third octaves, and have a
+//! log-spectral distance of 3.22 dB.
 
 use alloc::vec::Vec;
 

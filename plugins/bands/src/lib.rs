@@ -2,14 +2,15 @@
 //! to six bits per band.
 //!
 //! This model is not from the paper, and was not evaluated in perception experiments. The paper
-//! regresses ratings on energy differences in such bands (section "Linear regression"). Its r²,
-//! which the paper calls low, no longer grows above nine bands. Thirty bands keep a spectrum within
-//! about 0.3 dB of the recording in third-octave bands. Files store the piecewise linear curve that
-//! has these energies. The curve is linear in decibels, on the axis on which the bands are equally
-//! spaced. Its knots are at the bands' apexes.
+//! regresses ratings on energy differences in such bands (section "Linear regression"). The r² of
+//! this regression, which the paper calls low, no longer grows above nine bands. Thirty bands keep
+//! a spectrum within about 0.3 dB of the recording in third-octave bands. Files do not store the
+//! energies, but a curve with these energies. The curve is in decibels and piecewise linear, on the
+//! frequency axis on which the bands are equally spaced. Its knots are at the bands' apexes.
 //!
-//! The default is thirty knots from edge to edge, in steps of 1 dB, stored as differences in a Rice
-//! code. Medians over 15 simulated recordings:
+//! By default, there are thirty knots from edge to edge of the asset's frequency band. They have
+//! steps of 1 dB, and their differences are stored in a Rice code. The table has medians over 15
+//! simulated recordings:
 //!
 //! | knots | storage | third-octave error |
 //! |---|---|---|
@@ -19,9 +20,9 @@
 //! | 22 from edge to edge, on the axis ln(f + 20 Hz) | one byte per band | 0.5 dB |
 //! | 30 from edge to edge, on the axis ln(f + 20 Hz) | Rice code, 21 bytes in all | 0.3 dB |
 //!
-//! The axis ln(f + 20 Hz) keeps low knots at least one bin apart. In the Rice code, a band needs
-//! only two thirds of a byte. Entropy codes with longer tails need one byte more, and steps of
-//! 0.5 dB need two or three bytes more.
+//! On the axis ln(f + 20 Hz), even the knots at low frequencies are at least one bin apart. In the
+//! Rice code, a band needs only two thirds of a byte. In total, entropy codes with longer tails
+//! need one byte more, and steps of 0.5 dB need two or three bytes more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -68,9 +69,9 @@ const MAX_STEPS: f64 = 255.0;
 /// Resolution with which files store the step, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest distance between a band and the loudest band, and between a knot and the highest knot,
-/// dB. A band without energy is at this distance. The measure of band errors has the same limit,
-/// because it adds 1e-12 of the largest energy.
+/// Largest distance, dB, of a band below the loudest band, and of a knot below the highest knot. A
+/// band without energy is placed at this distance. The measure of band errors has the same limit,
+/// because it adds 1e-12 of the largest energy to every band.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {

@@ -1,13 +1,14 @@
 //! Friction map: grey values over a surface, where 0 is the lowest and 255 the highest friction.
-//! Displays with electroadhesion take such maps (TanvasTouch: 8-bit PNG).
+//! Electroadhesion displays play such maps. For example, TanvasTouch takes them as 8-bit PNG.
 //!
 //! Neighbouring pixels are `pitch_mm` apart. The first row is at the top. The map repeats beyond
 //! its edges. Between pixels, the friction is interpolated by a cubic (Catmull and Rom), so that a
 //! finger feels no steps.
 //!
-//! The voice follows the finger's place (`htex.motion/1`). It renders the friction at this place
-//! without the mean, limited to the band. Without motion input, it scans the map row by row at the
-//! speed of the parameters. The model's spectra and levels also refer to this scan.
+//! The voice follows the finger's place (`htex.motion/1`). It subtracts the mean from the friction
+//! at this place and limits the result to the asset's frequency band. Without motion input, the
+//! voice scans the map row by row, at the speed in the parameters. The spectra and levels that the
+//! model reports also apply to this scan.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -53,8 +54,8 @@ pub(crate) struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 
-/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows, at this speed
-/// and within the band.
+/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows. Only
+/// frequencies count that are within the band when the finger moves at this speed.
 ///
 /// # Errors
 /// Returns an error if the number of grey values is not a multiple of the width, or if the map has

@@ -1,5 +1,5 @@
-//! The spectrum along the rows of a map. It has one line for each integer number of waves in the
-//! width of the map.
+//! The spectrum along the rows of a map. The spectrum has one line for each integer number of waves
+//! in the width of the map.
 
 use alloc::vec::Vec;
 

@@ -33,11 +33,11 @@ pub(crate) struct Path {
 /// What a voice has to do when a new motion is set.
 #[derive(PartialEq)]
 pub(crate) enum Transition {
-    /// Start at the place.
+    /// Start the path at the new place.
     Start,
-    /// Do nothing: the path reaches the place smoothly.
+    /// Do nothing, because the path reaches the new place smoothly.
     Smooth,
-    /// Fade out before jumping to the place.
+    /// Fade out before jumping to the new place.
     Jump,
 }
 

@@ -1,4 +1,5 @@
-//! The voice: renders the friction under the finger without the mean, limited to the band.
+//! The voice: renders the friction under the finger after subtracting the mean, limited to the
+//! asset's frequency band.
 
 use htex_dsp::band_limit::{band_limit, band_limit_power};
 use htex_dsp::grid::Band;

@@ -31,8 +31,9 @@ pub(crate) struct Inverse {
 }
 
 enum Solver {
-    /// The power is the energies times this matrix, clipped at 0. The matrix has one row per band,
-    /// with the band's power in all bins.
+    /// The power spectrum is computed by multiplying the band energies by this matrix and replacing
+    /// negative results by 0. Each row of the matrix belongs to one band and has the power of this
+    /// band in all bins.
     Matrix(Vec<f64>),
     NonNegative(NonNegative),
 }

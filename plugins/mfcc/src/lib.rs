@@ -1,6 +1,7 @@
-//! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. They describe the logarithms
-//! of the energies in mel bands, smoothed by truncating their cosine transform (section "Mel
-//! Frequency Cepstral Coefficients" of the paper).
+//! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. The coefficients are the
+//! first terms of the cosine transform of the logarithmic energies in mel bands. They describe a
+//! smoothed spectrum, because the other terms are left out (section "Mel Frequency Cepstral
+//! Coefficients" of the paper).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -145,7 +146,7 @@ pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
     libm::round(parameters.scalar(field)) as usize
 }
 
-/// The magnitude on the grid that a cepstrum describes.
+/// The magnitude that a cepstrum describes, on the frequency grid.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
     band: Band,

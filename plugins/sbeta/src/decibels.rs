@@ -1,9 +1,10 @@
-//! The distance in decibels between a density and points, and the nearest density to the points, in
-//! closed form.
+//! The distance in decibels between a beta density and the points of a fit, and the density that is
+//! nearest to the points, in closed form.
 //!
-//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns. So the
-//! nearest density is a least-squares solution with two bounded unknowns. This no longer holds if a
-//! density is so faint at some point that its decibels are cut off. A search is used in this case.
+//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns α, β
+//! and scale. Therefore, the nearest density is the solution of a least-squares problem in which α
+//! and β are bounded. If a density is so faint at some point that its decibels are cut off, the
+//! problem is not linear, and the fit uses a search instead.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;

@@ -1,12 +1,13 @@
-//! Fits the density to the spectrum's peaks and to bins spread over the band. The fit minimises
-//! squared differences of decibels or of magnitudes. (The paper uses fminsearch on ten peaks and
-//! does not state the cost function.)
+//! Fits the beta density to the spectrum's peaks and to bins spread over the frequency band. The
+//! fit minimises squared differences of decibels or of magnitudes. (The paper uses fminsearch on
+//! ten peaks and does not state the cost function.)
 //!
-//! The paper's method corresponds to `error=magnitude`, `lower_bound=1`, `bins=0`. Squared
-//! magnitudes follow only the strongest peaks, and peaks say nothing about the frequencies between
-//! them. The table has nine-band and third-octave errors in dB, as median, mean and worst. They are
-//! from 32 third-party recordings (20 to 1000 Hz, at most half the rate; eight of them 60 to 1000
-//! Hz) and from 15 simulated recordings (five surfaces, three seeds):
+//! The paper's method corresponds to `error=magnitude`, `lower_bound=1`, `bins=0`. It has two
+//! weaknesses: a fit of squared magnitudes follows only the strongest peaks, and peaks give no
+//! information about the frequencies between them. Each cell of the table has three errors in dB:
+//! the median, the mean and the largest. "Recordings" are 32 third-party recordings, 24 of them
+//! from 20 to 1000 Hz (at most half the sample rate) and eight from 60 to 1000 Hz. "Simulated" are
+//! 15 simulated recordings (five surfaces, three seeds).
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|
@@ -18,10 +19,11 @@
 //! | `decibel`, bound 0.2, 20 bins | 2.3, 3.0, 10.6 | 4.1, 9.6, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //! | the default: `decibel`, bound 0.5, 20 bins | 2.3, 2.8, 7.9 | 4.1, 9.4, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //!
-//! If all peaks are on one side of the band, the density that fits them best has a spike where
-//! there is no peak, many decibels too high. So if a fit to peaks is higher than twice the largest
-//! bin, a second fit is made to peaks and bins. The fit that is nearer to peaks and bins in
-//! decibels is kept. In this comparison, each fit has its best scale.
+//! If all peaks are on one side of the band, the density that fits the peaks best has a spike at
+//! frequencies without a peak, many decibels too high. Therefore, if the maximum of a fit to peaks
+//! is higher than twice the largest bin, a second fit is made to peaks and bins. The result is the
+//! fit with the smaller distance in decibels to peaks and bins, when each of the two fits has its
+//! best scale.
 //!
 //! With `decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen such
 //! that the density has the energy of the points. If the density is still higher than twice the

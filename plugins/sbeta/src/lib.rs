@@ -1,5 +1,6 @@
 //! sBeta model (`org.htex.sbeta`): the envelope of the spectrum as a beta density on the normalised
-//! logarithmic frequency axis. It has two parameters (section "Spectral beta" of the paper).
+//! logarithmic frequency axis. The density has two parameters (section "Spectral beta" of the
+//! paper).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -97,7 +98,7 @@ impl ShapedModel for SpectralBeta {
     }
 }
 
-/// The density over frequency, with its RMS in the band.
+/// The beta density over frequency, and its RMS in the band.
 #[derive(Clone)]
 pub struct Shape {
     profile: Profile,

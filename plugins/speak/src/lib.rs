@@ -1,12 +1,12 @@
 //! sPeak model (`org.htex.speak`): the spectrum as a few sinusoids, whose frequencies are at least
 //! a just-noticeable difference apart (section "Spectral peak" of the paper, equation for y_sp).
 //!
-//! By default the frequency of a sinusoid is interpolated between the bins
-//! ([`htex_dsp::interpolated_peaks`]). A tone at any multiple of 0.5 Hz from 60 to 900 Hz is then
-//! stored with an error of less than 0.001 Hz and 0.001 dB. Other frequencies are rounded to 1/32
-//! Hz in files. With `frequency=bin`, as in the paper, each sinusoid is at a bin. The errors are
-//! then up to 2.5 Hz and 1.4 dB. The sound repeats every 0.2 s, because all lines are on the grid
-//! of 5 Hz.
+//! By default, the frequency of a sinusoid is interpolated between the bins
+//! ([`htex_dsp::interpolated_peaks`]). In this case, a tone at any multiple of 0.5 Hz from 60 to
+//! 900 Hz is stored with an error of less than 0.001 Hz and 0.001 dB. Files round other frequencies
+//! to 1/32 Hz. With `frequency=bin`, as in the paper, each sinusoid is at a bin. In this case, the
+//! errors are up to 2.5 Hz and 1.4 dB, and the sound repeats every 0.2 s, because all frequencies
+//! are multiples of 5 Hz.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

@@ -1,5 +1,5 @@
-//! Fits the slopes on both sides of the dominant peak, in decibels per decade. In the paper, they
-//! reach from 20 Hz to the peak, and from the peak to 1 kHz.
+//! Fits the slopes on both sides of the dominant peak, in decibels per decade. In the paper, the
+//! first slope reaches from 20 Hz to the peak, and the second slope from the peak to 1 kHz.
 
 use alloc::vec::Vec;
 

@@ -2,9 +2,9 @@
 //! parameters (section "Spectral slope" of the paper).
 //!
 //! With the paper's rounding to 20 dB per decade, the filter orders are integers. With finer
-//! rounding, or between two conditions, orders can be fractional, but a recursive filter must have
-//! an integer order. So white noise is shaped in the frequency domain with the Butterworth
-//! magnitude, which is defined for every order.
+//! rounding, or between two conditions, orders can be fractional, whereas a recursive filter must
+//! have an integer order. Therefore, the voice shapes white noise in the frequency domain with the
+//! Butterworth magnitude, which is defined for fractional orders as well.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -32,7 +32,7 @@ const LOW_PASS: usize = 2;
 
 /// Files store an order in steps of 1/20: 1 dB per decade.
 const ORDER_STEP: f64 = 0.05;
-/// Highest filter order: 400 dB per decade.
+/// Highest filter order. It corresponds to a slope of 400 dB per decade.
 pub const MAX_ORDER: f64 = 20.0;
 
 const fn steps(scale: f64) -> Store {

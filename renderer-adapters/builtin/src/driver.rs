@@ -1,5 +1,5 @@
-//! What adapters of native drivers have in common: finding the driver's library, the table of its
-//! functions, and reserving the hardware that the driver controls.
+//! The common part of adapters that use a native driver: finding the driver's library, loading the
+//! table of its functions, and reserving the hardware that the driver controls.
 #![allow(unsafe_code, reason = "a loader: the user asked to run the driver's initialisers")]
 
 use std::collections::{BTreeMap, BTreeSet};

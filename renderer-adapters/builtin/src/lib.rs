@@ -1,5 +1,5 @@
-//! The built-in devices, one per module. An adapter that is added to [`devices`] becomes available
-//! in the command, in Python and in C.
+//! The built-in devices, one per module. To make an adapter available in the command line, in
+//! Python and in C, add it to [`devices`].
 //!
 //! [`motor`] is the common part of outputs that receive a level and a frequency per block instead
 //! of samples.
@@ -55,14 +55,15 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// A device that is built in only with a Cargo feature: an output, and an input of the same name.
+/// A device that is built in only with a Cargo feature. It consists of an output and an input with
+/// the same name.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,
     /// What the output plays, in one word.
     pub what: &'static str,
     pub feature: &'static str,
-    /// The package that is needed to build it on Linux.
+    /// The Linux package that is needed to build the device.
     pub package: &'static str,
     /// Whether this program was built with the feature.
     pub is_built: bool,

@@ -10,7 +10,7 @@ use htex_device::{
 use crate::audio::card::{self, Card, DEFAULT};
 use crate::audio::sound::{Channels, Sound};
 
-/// The sound output adapter. See the crate's documentation.
+/// The sound output adapter, which plays on sound cards. See the crate's documentation.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Audio;
 

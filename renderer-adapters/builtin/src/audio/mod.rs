@@ -1,13 +1,14 @@
 //! Sound cards: outputs play textures as sound, and inputs are recorded. In the samples, 1 is full
 //! scale.
 //!
-//! The adapters need the feature `audio`. On Linux, this feature needs ALSA (`libasound2-dev`) to
-//! build. Without the feature, everything else builds without ALSA, and the buffers can be tested.
+//! The adapters need the feature `audio`. On Linux, building this feature needs ALSA
+//! (`libasound2-dev`). Without the feature, the rest of the crate builds without ALSA, and the
+//! buffers of this module can still be tested.
 //!
 //! Samples for an output wait in a ring buffer of `buffer_ms`. The sound card's own thread takes
-//! them from there (`player.rs`). This thread takes no lock, does not allocate and does not wait.
-//! If the ring buffer is empty, the thread counts an underrun and fades to silence. Playback
-//! continues with the next samples.
+//! the samples from this buffer (`player.rs`). The thread does not lock, allocate or wait. If the
+//! ring buffer is empty, the thread counts an underrun and fades to silence. Playback continues as
+//! soon as new samples arrive.
 //!
 //! For an input, the card's thread puts samples into a ring buffer of `buffer_s` (`listener.rs`). A
 //! full ring buffer is an overrun. After an overrun, the input delivers nothing more.

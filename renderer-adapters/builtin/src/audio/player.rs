@@ -11,9 +11,9 @@ const FADE_S: f64 = 0.005;
 /// A request from the writer to the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wish {
-    /// Play. A missing sample is an underrun.
+    /// Play the samples in the ring buffer. If a sample is missing, count an underrun.
     Play = 0,
-    /// Play the samples in the ring, then silence.
+    /// Play the samples that are still in the ring buffer, and then silence.
     Drain = 1,
     /// Fade out now.
     Stop = 2,

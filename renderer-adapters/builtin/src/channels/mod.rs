@@ -1,9 +1,9 @@
-//! Outputs with several channels. Selected channels play the texture. The interleaved frames go to
-//! a sound card, to a WAV file, or nowhere.
+//! Outputs with several channels, of which the user selects the ones that play the texture. The
+//! interleaved frames go to a sound card or to a WAV file, or are discarded.
 //!
-//! A DualSense controller connected by a cable is a sound card of four channels. The first two
-//! channels are its loudspeaker and headset, the other two its left and right actuator. The
-//! actuators play samples, so nothing of a texture is lost.
+//! For example, a DualSense controller connected by a cable is a sound card with four channels.
+//! Channels 1 and 2 are its loudspeaker and headset. Channels 3 and 4 are its left and right
+//! actuator. The actuators play samples, so no part of a texture is lost.
 #![forbid(unsafe_code)]
 
 mod nowhere;
@@ -20,7 +20,7 @@ use htex_device::{
 
 use to::To;
 
-/// The multi-channel adapter. See the crate's documentation.
+/// The adapter for outputs with several channels. See the crate's documentation.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Channels;
 

@@ -1,20 +1,23 @@
-//! National Instruments cards: an analog output drives an electrovibration display through an
-//! amplifier, and analog inputs are recorded.
+//! National Instruments cards. An analog output drives an electrovibration display through an
+//! amplifier, and analog inputs record.
 //!
-//! Samples are volts *at the display*, including the carrier. This adapter divides them by the
-//! amplifier's gain and streams them through NI-DAQmx, which is loaded at run time and not linked.
+//! The samples of an output are volts *at the display*, including the carrier. The adapter divides
+//! them by the amplifier's gain and streams them through NI-DAQmx. The NI-DAQmx library is not
+//! linked, but loaded at run time.
 //!
 //! The voltage is limited in these ways:
 //! - A sample beyond `limit_v` is never output. The driver's own channel limits are set to the same
 //!   value.
-//! - The output goes to zero before a stream, after it, on every error, and when the device is
-//!   dropped. A thread of the device detects an empty buffer even if no more samples are written.
-//!   It also sets the output to zero if a call of the driver does not return for 0.3 s.
-//! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output, whatever caused
-//!   them.
-//! - A stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its first and
-//!   after its last* sample. The ramp is the mirrored stream, multiplied by a weight that falls to
-//!   zero, so that a carrier stays a carrier. The samples themselves are never changed.
+//! - The output goes to zero before and after a stream, on every error, and when the device is
+//!   dropped. A thread of the device, the watchdog, detects an empty buffer even if the program has
+//!   stopped writing samples. The watchdog also sets the output to zero if a call of the driver
+//!   does not return for 0.3 s.
+//! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output.
+//! - If a stream does not begin at zero, the adapter outputs a ramp of `ramp_ms` *before its first*
+//!   sample. If the stream does not end at zero, the adapter outputs such a ramp *after its last*
+//!   sample. The ramp is the mirrored stream, multiplied by a weight that falls to zero away from
+//!   the stream. Therefore, the ramp keeps the frequency of the carrier. The samples of the stream
+//!   are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
 //! [`DaqInput`] records the analog inputs of a card, in volts.

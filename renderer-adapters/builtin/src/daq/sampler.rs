@@ -1,4 +1,4 @@
-//! An open input. Samples wait in the driver's buffer until they are read.
+//! An open analog input. Samples wait in the driver's buffer until they are read.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};

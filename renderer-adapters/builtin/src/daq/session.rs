@@ -1,11 +1,11 @@
-//! The state that the writer and the watchdog of an open output share: the running task, and how
-//! the output returns to zero.
+//! The state that the writer and the watchdog of an open output share: the running task, and the
+//! data for returning the output to zero.
 //!
-//! The adapter refuses a sample over the limit and a mean over the direct-voltage limit. The driver
-//! also checks the limit of a sample, with its own channel limits. The watchdog detects an
-//! underflow, because a writer that hangs would leave the last voltage at the output. Every session
-//! ends with an unclocked write of zero, however it ends. If this write fails, it is repeated, the
-//! last time after a reset of the card.
+//! The adapter refuses a sample over the limit, and samples whose mean exceeds the direct-voltage
+//! limit. In addition, the driver refuses samples beyond its own channel limits. The watchdog
+//! detects an underflow, because otherwise the last voltage would stay at the output if the writer
+//! hangs. However a session ends, its last step is an unclocked write of zero. If this write fails,
+//! it is repeated, the last time after a reset of the card.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

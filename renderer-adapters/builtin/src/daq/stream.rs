@@ -1,10 +1,10 @@
-//! An open output. A write waits for space in the buffer, and the end waits until all samples are
-//! output.
+//! An open analog output. Writing waits for space in the buffer, and finishing waits until all
+//! samples have been output.
 //!
-//! The number of samples in the buffer is counted from the samples that were output. The driver
-//! itself reports free space as soon as samples have moved to the card's memory. The ramp before a
-//! stream is not counted. With a live motion, the buffer holds 20 ms (`live_default` of
-//! `buffer_ms`).
+//! The device computes the number of waiting samples from the number of samples that were output.
+//! It does not use the free space that the driver reports, because the driver counts samples as
+//! gone as soon as they are in the card's memory. The ramp before a stream is not counted. With a
+//! live motion, the buffer holds 20 ms (`live_default` of `buffer_ms`).
 
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;

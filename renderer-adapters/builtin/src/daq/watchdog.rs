@@ -23,8 +23,8 @@ pub(crate) fn say(error: &DeviceError) {
 pub(crate) enum Watches {
     /// Asks the driver whether the output is still running.
     Output,
-    /// Checks only that the session is free from time to time. Does not call the driver, because
-    /// this call might also hang.
+    /// Checks only that the session's lock becomes free from time to time. Does not call the
+    /// driver, because such a call might also hang.
     Calls,
 }
 

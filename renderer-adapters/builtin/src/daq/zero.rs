@@ -1,8 +1,9 @@
 //! Writes zero to the output, even if a call of the driver does not return.
 //!
-//! A driver call may hang while it holds the session. So nothing in this module needs the session.
-//! If the watchdog or a caller waits for the session longer than [`HANG`], it sets the output to
-//! zero with a separate task. The session notices this as soon as its call returns, and ends.
+//! A driver call may hang while it holds the lock of the session. Therefore, this module does not
+//! use the session. If the watchdog or a caller waits for the session longer than [`HANG`], the
+//! waiting thread sets the output to zero with a separate driver task. When the driver call
+//! returns, the session notices this and ends.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};

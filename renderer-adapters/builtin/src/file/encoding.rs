@@ -3,9 +3,9 @@
 /// How a sample is encoded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Encoding {
-    /// The quantity itself, as a 32-bit float.
+    /// Each sample is the quantity itself, as a 32-bit float.
     F32,
-    /// An integer number of steps, in two's complement.
+    /// Each sample is an integer number of steps, in two's complement.
     Integer {
         /// 16 or 24.
         bits: u16,

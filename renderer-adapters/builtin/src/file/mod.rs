@@ -1,11 +1,12 @@
-//! A device that writes a file: the mechanical quantity at the finger, or the drive signal of a
-//! display, as WAV, CSV, NPY or raw samples.
+//! A device that writes a file. The samples are the mechanical quantity at the finger or the drive
+//! signal of a display. The format is WAV, CSV, NPY or raw samples.
 //!
 //! Samples are written as fast as they are generated, through a buffer of fixed size, into a
 //! temporary file next to the final file. Finishing the output renames the temporary file. An
 //! output that is dropped before it is finished leaves no file.
 //!
-//! A WAV file larger than 4 GiB is an error. RF64 would allow it, but few programs read RF64.
+//! A WAV file larger than 4 GiB is an error. The RF64 format allows larger files, but few programs
+//! read RF64.
 #![allow(unsafe_code, reason = "the C functions of the device ABI")]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,4 +1,4 @@
-//! The file that the settings ask for. Checks that the file format supports the settings.
+//! Reads the settings of the file to write, and checks that the file format supports them.
 
 use std::path::{Path, PathBuf};
 

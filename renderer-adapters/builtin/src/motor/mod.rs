@@ -3,13 +3,13 @@
 //!
 //! An adapter implements [`Motor`], and [`PacedOutput`] makes an open device from it. The device
 //! takes samples of sound and keeps them in a buffer. The device's own thread passes the samples to
-//! the motor in real time, in blocks. Each block comes with its level and mean frequency.
-//! [`htex_dsp::envelope`] measures both as it does for `Voice::envelope`, so a device needs no
+//! the motor in real time, in blocks. Each block comes with its level and mean frequency. Level and
+//! mean frequency are measured from the samples ([`htex_dsp::envelope`]), so a device needs no
 //! model.
 //!
-//! The motor is at rest before the first block and after the last block. The thread also stops it
-//! after every error, when the device is dropped, and when samples come too late. This works even
-//! if the writer hangs.
+//! The motor is at rest before the first block and after the last block. The thread also stops the
+//! motor after every error, when the device is dropped, and when samples come too late. It stops
+//! the motor even if the thread that writes the samples hangs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

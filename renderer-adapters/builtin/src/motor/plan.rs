@@ -31,7 +31,7 @@ pub fn reducing_settings() -> Vec<Setting> {
     vec![gain, block, buffer_setting()]
 }
 
-/// Returns the setting `buffer_ms`. Its default is shorter for a live motion.
+/// Returns the setting `buffer_ms`. Its default is shorter if the motion is live.
 pub fn buffer_setting() -> Setting {
     let [usual, live] = DEFAULT_BUFFER_MS;
     Setting::hardware(
@@ -58,7 +58,8 @@ pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError
 /// The values of the settings that all devices with motors have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// Strength of the motor at a level of 1, before it is limited to 1.
+    /// Factor from the level of a block to the strength of the motor. Strengths above 1 are limited
+    /// to 1.
     pub gain: f64,
     /// Duration of a block, seconds.
     pub block_s: f64,

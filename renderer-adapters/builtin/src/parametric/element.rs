@@ -1,4 +1,5 @@
-//! The haptic element (OpenXR's name for an actuator) of a hand, reserved for one open device.
+//! The haptic element of a hand, reserved for one open device. OpenXR calls an actuator a haptic
+//! element.
 
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Piecewise linear envelopes (PWLE), as Android's `VibrationEffect.WaveformEnvelopeBuilder`
 //! (API 36) accepts them.
 //!
-//! Android offers vibrators only in Java. The application therefore exports three C functions that
-//! call Java (`docs/devices.md` declares them). An effect replaces the previous effect and begins
-//! at rest: its first point is a ramp from 0. Streaming is a series of effects. Each effect is
-//! passed on as soon as its blocks are known.
+//! Android gives access to vibrators only in Java. The application therefore exports three C
+//! functions that call Java (`docs/devices.md` declares them). A stream is played as a series of
+//! effects. Each effect replaces the previous effect and begins with a ramp from 0. The adapter
+//! passes an effect to the application as soon as all blocks of the effect are known.
 #![allow(unsafe_code)] // The application's functions are C.
 
 use std::thread::sleep;

@@ -1,18 +1,18 @@
 //! Controllers that take points or samples several times per second, through an OpenXR runtime.
 //!
-//! The loaded library is either a runtime itself or the installed loader. It is loaded at run time,
-//! so nothing is linked. The setting `form` chooses what is played:
+//! The adapter is not linked to an OpenXR library, but loads a runtime or the installed loader at
+//! run time. The setting `form` chooses what is played:
 //! - `form=points` plays `XR_EXT_haptic_parametric`. Each block of `block_ms` becomes a point with
 //!   the amplitude and the frequency at the end of the block ([`htex_dsp::reduced::Points`]).
 //!   Points are passed on in frames. A frame has the duration that the runtime prefers.
 //! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the controller's sample rate.
-//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept. It calls
-//!   functions of the application.
+//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept. The adapter
+//!   plays them through functions that the application exports.
 //!
-//! The adapter has its own session, without graphics (`XR_MND_headless`), so that the command can
-//! play on a controller. A session ends when its last device is closed. If the program hangs, the
-//! runtime ends a stream of points after 50 ms, and a stream of samples when it has no more
-//! samples.
+//! The adapter has its own session without graphics (`XR_MND_headless`), so that a program without
+//! graphics, such as the command `htex`, can play on a controller. A session ends when its last
+//! device is closed. If the program hangs, the runtime ends a stream of points after 50 ms. It ends
+//! a stream of samples when it has played all samples that it received.
 #![deny(unsafe_code)]
 
 mod element;

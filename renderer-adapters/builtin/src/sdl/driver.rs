@@ -1,4 +1,5 @@
-//! SDL, loaded and initialised on first use, once for each library.
+//! The SDL library, which is loaded and initialised on first use. If several library files are in
+//! use, each is initialised once.
 #![allow(unsafe_code)] // The library's functions are C.
 
 use htex_device::DeviceError;

@@ -1,12 +1,14 @@
-//! The motors of gamepads and joysticks, through SDL 2, which is loaded at run time and not linked.
+//! The motors of gamepads and joysticks, through SDL 2. The SDL library is not linked, but loaded
+//! at run time.
 //!
-//! A gamepad has two motors with an unbalanced mass, a large motor and a small motor. Each motor
-//! takes a strength. The level of each block of `block_ms` is divided between the motors by the
-//! mean frequency ([`htex_dsp::reduced::two_motors`]).
+//! A gamepad has a large and a small motor, each with an unbalanced mass. Each motor takes a
+//! strength. The mean frequency of a block of `block_ms` determines how the level of the block is
+//! divided between the two motors ([`htex_dsp::reduced::two_motors`]).
 //!
-//! A strength holds only for `HOLD_BLOCKS` blocks. If this thread hangs in a program that polls
-//! SDL's events, SDL stops the motors after that time. If the program ends, the system stops the
-//! motors. SDL stays initialised, because the application may also use SDL.
+//! A strength is valid for `HOLD_BLOCKS` blocks. If the device's thread hangs in a program that
+//! polls SDL's events, SDL stops the motors after the time of these blocks. If the program ends,
+//! the operating system stops the motors. SDL stays initialised, because the application may also
+//! use SDL.
 #![deny(unsafe_code)]
 
 mod driver;

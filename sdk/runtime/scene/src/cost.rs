@@ -21,7 +21,7 @@ pub struct Costs {
     /// Time to process one sample at the stage's rate, nanoseconds, for each stage.
     pub stage_ns: BTreeMap<String, f64>,
     /// The same time for each stage that a scene switches on although the stage changes no samples.
-    /// Interpolation and crossfades are not listed, because they take no time in this case.
+    /// Interpolation and crossfades are not listed and count as 0.
     pub neutral_ns: BTreeMap<String, f64>,
     /// Time per sample that the renderer itself takes, nanoseconds. The first value applies to a
     /// scene in which nothing changes. The second value applies to a scene whose motion is read

@@ -183,8 +183,9 @@ pub struct DeviceChoice {
     /// start at the scene's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// Depth of the compensation, decibels. Where the response is farther below its maximum than
-    /// this depth, it is not compensated fully.
+    /// Depth of the compensation, decibels below the response's maximum. At this depth, the gain is
+    /// half of the gain that would fully compensate the response. Farther below, the gain
+    /// decreases.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,

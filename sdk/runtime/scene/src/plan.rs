@@ -37,7 +37,7 @@ pub struct Plan {
     pub block_frames: usize,
     /// Length of the scene, frames. `None` if it is endless.
     pub frames: Option<u64>,
-    /// The machine on which the costs were measured.
+    /// Name of the machine on which the costs were measured, and how they were measured.
     pub costs: String,
     /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the
     /// assets' unit.

@@ -1,4 +1,4 @@
-//! What output tasks and input tasks have in common: the handle, the clock, start and stop.
+//! The common part of output tasks and input tasks: the handle, the clock, start and stop.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use super::Driver;

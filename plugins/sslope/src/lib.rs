@@ -4,7 +4,7 @@
 //! With the paper's rounding to 20 dB per decade, the filter orders are integers. With finer
 //! rounding, or between two conditions, orders can be fractional, whereas a recursive filter must
 //! have an integer order. Therefore, the voice shapes white noise in the frequency domain with the
-//! Butterworth magnitude, which is defined for fractional orders as well.
+//! Butterworth magnitude, which is also defined for fractional orders.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

@@ -2,18 +2,18 @@
 //! output or an input) share.
 //!
 //! A library exports one function, [`EntryFn`], which returns its [`DeviceTable`]. The functions
-//! take and return only scalars, and buffers as a pointer and a length. Negative results are
-//! [`Code`]s.
+//! take and return only scalars, and buffers as a pointer and a length. A negative result is a
+//! [`Code`].
 //!
-//! A function that returns a text writes as much of it as fits into the caller's buffer, and
-//! returns the length of the whole text in bytes. If the buffer was too small, the caller calls
-//! again with a larger one.
+//! A function that returns a text writes as much of the text as fits into the caller's buffer, and
+//! returns the length of the whole text in bytes. If the buffer was too small, the caller calls the
+//! function again with a larger buffer.
 //!
 //! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order of the
-//! descriptor. It passes every setting, with the profile and the defaults already applied.
+//! descriptor. The host passes every setting, after it has applied the profile and the defaults.
 //!
-//! Samples of an output are `f32`. Samples of an input are `f64` and interleaved: frame after
-//! frame, and within a frame one sample of each channel.
+//! Samples of an output are `f32`. Samples of an input are `f64`. They are interleaved: a frame
+//! consists of one sample of each channel, and the frames follow one another.
 
 /// Major version: a host loads only devices of its own major version.
 pub const ABI_MAJOR: u32 = 1;
@@ -33,8 +33,8 @@ pub const MIN_RATE_HZ: f64 = 1.0;
 pub const MIN_INPUT_RATE_HZ: f64 = 0.001;
 /// Highest rate of a device, hertz.
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
-/// Maximum block size of an output, frames: the size that it prefers, and the size that the host
-/// opens it with. The minimum is one.
+/// Maximum block size of an output, frames. This limit applies to the size that the output prefers
+/// and to the size with which the host opens the output. The minimum is one.
 pub const MAX_BLOCK_FRAMES: u32 = 1_048_576;
 /// Maximum number of channels of an input. The minimum is one.
 pub const MAX_CHANNELS: usize = 1_024;
@@ -121,14 +121,15 @@ pub type EntryFn = extern "C" fn() -> *const DeviceTable;
 /// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`. Returns the length, which is the same
 /// at each call. `[any thread]`
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Writes the text of the calling thread's last error. Returns the length. `[any thread]`
+/// Writes the text of the calling thread's last error. Returns the length of the text.
+/// `[any thread]`
 pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes a JSON array of the devices that are connected now. Returns the length, which may change.
 /// `[any thread; may wait]`
 pub type EndpointsJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Opens a device and returns its handle, which is greater than 0. A newly opened output is silent
-/// and at zero, and expects blocks of `block_frames`. An input does not sample yet; for an input,
-/// `rate_hz` and `block_frames` are 0. `[any thread; may wait]`
+/// and at zero, and expects blocks of `block_frames`. A newly opened input does not sample yet. For
+/// an input, `rate_hz` and `block_frames` are 0. `[any thread; may wait]`
 pub type OpenFn = unsafe extern "C" fn(
     settings: *const u8,
     settings_len: usize,
@@ -153,9 +154,10 @@ pub type CapabilitiesJson = unsafe extern "C" fn(
     out: *mut u8,
     capacity: usize,
 ) -> i64;
-/// Passes samples to an output. The output takes as many as fit within `timeout_ms` (0: as many as
-/// fit now) and returns their number. The first samples start the output. `[one thread at a time
-/// for one device; may wait]`
+/// Passes samples to an output. The output takes the samples for which it has space within
+/// `timeout_ms`, and returns their number. With a timeout of 0, it takes the samples for which it
+/// has space now. The first samples start the output.
+/// `[one thread at a time for one device; may wait]`
 pub type WriteFn =
     unsafe extern "C" fn(device: i64, samples: *const f32, frames: usize, timeout_ms: u32) -> i64;
 /// Writes up to `capacity` status numbers of an output to `out`, in the order of the indices
@@ -173,7 +175,8 @@ pub type StartFn = extern "C" fn(device: i64) -> i64;
 pub type ReadFn =
     unsafe extern "C" fn(device: i64, samples: *mut f64, len: usize, timeout_ms: u32) -> i64;
 
-/// The table of a device's functions. The functions of the other direction may be null.
+/// The table of a device's functions. An output may have null for the functions of inputs, and an
+/// input may have null for the functions of outputs.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // Each type says what its function does.
@@ -189,11 +192,11 @@ pub struct DeviceTable {
     pub finish: Option<FinishFn>,
     pub close: Option<CloseFn>,
     pub extension: Option<ExtensionFn>,
-    /// Only for outputs, like the next two functions.
+    /// This function and the next two are only for outputs.
     pub capabilities: Option<CapabilitiesJson>,
     pub write: Option<WriteFn>,
     pub status: Option<StatusFn>,
-    /// Only for inputs, like the next two functions.
+    /// This function and the next two are only for inputs.
     pub stream: Option<StreamJson>,
     pub start: Option<StartFn>,
     pub read: Option<ReadFn>,

@@ -10,10 +10,10 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 
 /// A family of devices, such as all sound cards. Implement this trait to add a device.
 ///
-/// An adapter describes its devices and opens them. [`Descriptor::direction`] says whether they are
-/// outputs, which play samples, or inputs, which record them. An adapter has one direction and
-/// implements the methods of that direction. The others return [`DeviceError::Direction`] by
-/// default.
+/// An adapter describes its devices and opens them. All devices of an adapter have one direction
+/// ([`Descriptor::direction`]): they are outputs, which play samples, or inputs, which record
+/// samples. An adapter implements the methods of its direction. By default, the methods of the
+/// other direction return [`DeviceError::Direction`].
 ///
 /// | direction | implement, besides [`Self::descriptor`] and [`Self::endpoints`] |
 /// |---|---|
@@ -24,17 +24,19 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// - A program creates the adapter once and shares it between threads, so the methods take `&self`
 ///   and may run at the same time.
-/// - [`Self::descriptor`] is called first: the settings of all other calls follow from it.
+/// - [`Self::descriptor`] is called first. The settings that the host passes in later calls are
+///   settings of this descriptor.
 /// - [`Self::endpoints`] is called to list the hardware, e.g. by `htex device list`.
-/// - [`Self::capabilities`] is called before every opening of an output: the host chooses the rate
-///   and the block size from it.
+/// - [`Self::capabilities`] is called before every opening of an output. From the capabilities, the
+///   host chooses the rate and the block size.
 /// - [`Self::open_output`] or [`Self::open_input`] is called last. The open device may move to
 ///   another thread.
 ///
-/// The [`Settings`] are complete when they arrive: profile and defaults are applied, and each value
-/// is allowed by its [`SettingKind`](crate::SettingKind). An adapter checks only what depends on
-/// several settings or on the hardware. On the command line, `NAME:TARGET` (e.g. `daq:Dev1/ai0`)
-/// selects one device: `TARGET` becomes the value of the setting that [`Descriptor::target`] names.
+/// An adapter receives complete [`Settings`]: the host has applied the profile and the defaults,
+/// and has checked each value against its [`SettingKind`](crate::SettingKind). An adapter has to
+/// check only conditions that depend on several settings or on the hardware. On the command line,
+/// `NAME:TARGET` (e.g. `daq:Dev1/ai0`) selects one device: `TARGET` becomes the value of the
+/// setting that [`Descriptor::target`] names.
 ///
 /// To build a native library from an adapter, derive `Default` and call
 /// [`export_device!`](crate::export_device). The macro turns errors into status codes and catches
@@ -238,13 +240,13 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// # Limits
 ///
-/// - An output has one stream of samples of one quantity at one rate. A device with several
-///   channels needs its own setting for what each channel plays.
+/// - An output has one stream of samples of one quantity at one rate. If a device has several
+///   channels, its adapter needs a setting that determines what each channel plays.
 /// - A paced output of display voltage must keep its mean voltage within
-///   [`DirectVoltage`](crate::DirectVoltage). The host checks this for native libraries; a built-in
-///   adapter checks it itself.
+///   [`DirectVoltage`](crate::DirectVoltage). For a native library, the host checks the mean
+///   voltage. A built-in adapter must check it itself.
 /// - The host checks the rate, channels, counts and samples of an input from a native library
-///   ([`NativeInput`](crate::NativeInput)). It trusts a built-in input.
+///   ([`NativeInput`](crate::NativeInput)). The host does not check a built-in input.
 /// - The adapter must check everything else. `htex device check` tests each guarantee of the ABI on
 ///   a native library or a built-in adapter.
 pub trait Adapter: Send + Sync {
@@ -300,27 +302,29 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 /// An open output, which takes samples and plays them.
 ///
 /// The host calls [`Self::write`] in a loop, usually with blocks of [`StreamFormat::block_frames`].
-/// If the output takes only a part of a block, the host offers the rest again. It calls
-/// [`Self::finish`] at the end. Calls never overlap, but they may come from different threads.
+/// If the output takes only a part of a block, the host passes the rest of the block in the next
+/// call. At the end, the host calls [`Self::finish`]. Calls never overlap, but they may come from
+/// different threads.
 ///
 /// An output that is dropped without [`Self::finish`] aborts: it goes to zero at once, and an
 /// unfinished file is removed. The drop may happen at any time, even after an error.
 ///
-/// An output with a clock needs a thread or a driver of its own, because it must go to zero even if
-/// the host hangs and writes no more samples.
+/// An output with a clock needs its own thread or driver, because the output must go to zero even
+/// if the host hangs and writes no more samples.
 ///
 /// # Known doubts
 ///
 /// - [`Status::latency_s`] is the device's own estimate. The host does not measure it.
-/// - A display that runs dry must return [`DeviceError::Underflow`] and stay at zero. Other outputs
-///   may continue, as the built-in sound card does: it fades to silence and counts an underrun. A
-///   host sees this underrun only in [`Status::underruns`].
+/// - If samples come too late, an electrovibration display must return [`DeviceError::Underflow`]
+///   and stay at zero. Other outputs may continue. For example, the built-in sound card fades to
+///   silence and counts an underrun, which a host sees only in [`Status::underruns`].
 ///
 /// [`Adapter`] has a complete example.
 pub trait Output: Send {
-    /// Takes as many samples as fit within `timeout` and returns their number. With a timeout of
-    /// zero, it takes what fits now and does not wait. Any number of samples may be offered,
-    /// including none. The first samples start the output. `[one thread at a time; may wait]`
+    /// Takes the samples for which the output has space within `timeout`, and returns their number.
+    /// With a timeout of zero, it takes the samples for which it has space now, and does not wait.
+    /// The host may pass any number of samples, including none. The first samples start the output.
+    /// `[one thread at a time; may wait]`
     ///
     /// # Errors
     /// Returns an error if a sample is over the limit or not a number, if the output ran out of
@@ -339,11 +343,12 @@ pub trait Output: Send {
     fn finish(&mut self) -> Result<(), DeviceError>;
 }
 
-/// An open input, which delivers frames of samples. Dropping it stops it.
+/// An open input, which delivers frames of samples. Dropping an input stops it.
 ///
-/// The host reads [`Self::stream`] and calls [`Self::start`] once. It then calls [`Self::read`] in
-/// a loop until it has enough or gets [`InputFrames::End`], and calls [`Self::finish`] or drops the
-/// input. Calls never overlap, but they may come from different threads.
+/// The host reads [`Self::stream`] and calls [`Self::start`] once. The host then calls
+/// [`Self::read`] in a loop until it has enough frames or receives [`InputFrames::End`]. Finally,
+/// the host calls [`Self::finish`] or drops the input. Calls never overlap, but they may come from
+/// different threads.
 ///
 /// [`Adapter`] has a complete example.
 pub trait Input: Send {
@@ -378,14 +383,15 @@ pub trait Input: Send {
 /// The result of reading from an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputFrames {
-    /// The number of frames written to the buffer; 0 if none arrived within the timeout.
+    /// The number of frames written to the buffer; 0 if no frame arrived within the timeout.
     Count(usize),
     /// The input has ended (e.g. at the end of a file); there are no more frames.
     End,
 }
 
 /// The sample rate and block size with which an output is opened. The stream has one channel. A
-/// device with several channels plays it on all of them, unless its settings say otherwise.
+/// device with several channels plays the stream on all channels, unless its settings select
+/// channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamFormat {
     /// Sample rate, hertz.
@@ -405,7 +411,7 @@ pub struct Status {
     pub underruns: u64,
     /// Latency from writing a sample to playing it, seconds.
     pub latency_s: f64,
-    /// Largest magnitude written, in the device's unit.
+    /// Largest magnitude of a sample that the output has accepted, in the device's unit.
     pub peak: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 /// carrier could alias to a slow or direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
-/// Capabilities of an output. They cross the ABI as JSON.
+/// Capabilities of an output. A native library passes them to the host as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
@@ -34,8 +34,8 @@ pub struct Capabilities {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub carrier_hz: Option<f64>,
-    /// Whether the output takes samples at the pace of a clock. If not (e.g. a file), it takes them
-    /// as fast as they are generated.
+    /// True if the output takes samples at the pace of a clock. False if the output takes samples
+    /// as fast as they are generated, as a file does.
     pub paced: bool,
     /// Preferred block size, frames.
     #[cfg_attr(feature = "schemars", schemars(range(min = 1, max = MAX_BLOCK_FRAMES)))]
@@ -43,7 +43,7 @@ pub struct Capabilities {
 }
 
 impl Capabilities {
-    /// Checks that the numbers are in range and agree with each other.
+    /// Checks that the numbers are in range and do not contradict each other.
     ///
     /// # Errors
     /// [`DeviceError::Invalid`] with the first fault.
@@ -102,8 +102,8 @@ impl Capabilities {
     }
 
     /// Checks that each sample is a number within the limit. The limit is first rounded to the
-    /// nearest `f32`. `first_frame` is the index of the first of `samples` since the device was
-    /// opened.
+    /// nearest `f32`. `first_frame` is the index of the first sample of `samples`, counted since
+    /// the device was opened.
     ///
     /// # Errors
     /// [`DeviceError::OverLimit`] for the first sample that is over the limit or not a number.
@@ -141,8 +141,8 @@ pub enum Quantity {
     Velocity,
     /// Displacement of the finger or tool, metres.
     Displacement,
-    /// Voltage at an electrovibration display, volts. The added friction is proportional to its
-    /// square.
+    /// Voltage at an electrovibration display, volts. The friction that the display adds is
+    /// proportional to the square of the voltage.
     DisplayVoltage,
     /// Sound, where 1 is full scale.
     Sound,
@@ -173,8 +173,8 @@ impl Quantity {
         }
     }
 
-    /// Whether the samples are a mechanical quantity in an SI unit. If so, textures are played at
-    /// their own level, without scaling.
+    /// Whether the samples are a mechanical quantity in an SI unit. Textures of a mechanical
+    /// quantity are played at their own level, without scaling.
     pub fn is_physical(self) -> bool {
         !matches!(self, Self::DisplayVoltage | Self::Sound)
     }

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::abi::MAX_SETTINGS;
 use crate::{DeviceError, Settings};
 
-/// An adapter's description. It crosses the ABI as JSON. The default is an output without settings.
+/// An adapter's description. A native library passes it to the host as JSON. The default is an
+/// output without settings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Descriptor {
@@ -22,7 +23,8 @@ pub struct Descriptor {
     /// Whether the adapter's devices play or record.
     pub direction: Direction,
     /// Name of the setting that selects one of the adapter's devices. On a command line,
-    /// `NAME:TARGET` gives that setting the value `TARGET`. An input must have one.
+    /// `NAME:TARGET` gives that setting the value `TARGET`. The descriptor of an input must name
+    /// such a setting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<String>,
     /// Settings, each with its default.
@@ -30,8 +32,8 @@ pub struct Descriptor {
     /// Named groups of settings, e.g. for one rig.
     #[serde(default)]
     pub profiles: Vec<Profile>,
-    /// How an output transforms the samples and what is lost. If absent, the output plays the
-    /// samples themselves.
+    /// How an output transforms the samples, and what is lost in the transformation. If absent, the
+    /// output plays the samples without a transformation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mapping: Option<Mapping>,
 }
@@ -41,10 +43,10 @@ pub struct Descriptor {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
-    /// It plays samples.
+    /// The device plays samples.
     #[default]
     Output,
-    /// It records samples.
+    /// The device records samples.
     Input,
 }
 
@@ -57,11 +59,12 @@ impl std::fmt::Display for Direction {
     }
 }
 
-/// How a device that cannot play the samples themselves transforms them.
+/// How a device transforms samples that it cannot play directly.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Mapping {
-    /// What the device plays instead, e.g. the level and mean frequency of each block.
+    /// What the device plays instead of the samples, e.g. the level and mean frequency of each
+    /// block.
     pub plays: String,
     /// What is lost in the transformation.
     pub loses: String,
@@ -95,21 +98,21 @@ pub struct Setting {
     pub description: String,
 }
 
-/// How a scene may change a setting. Only the user may give the settings that describe the
-/// hardware, one by one or by choosing a profile.
+/// How a scene may change a setting. A setting that describes the hardware can be set only by the
+/// user, directly or by choosing a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FromScene {
-    /// The scene may set it, unless the user does.
+    /// The scene may set the value, but a value from the user takes precedence.
     #[default]
     Any,
-    /// The scene may lower the user's value or the default, e.g. of a limit or a buffer. The
+    /// The scene may lower the value of the user or the default, e.g. of a limit or a buffer. The
     /// smallest of the given numbers applies.
     Less,
-    /// The scene may raise the user's value or the default, e.g. of a ramp.
+    /// The scene may raise the value of the user or the default, e.g. of a ramp.
     More,
-    /// The scene may not change it.
+    /// The scene may not change the value.
     Never,
 }
 
@@ -157,8 +160,8 @@ pub struct Profile {
     pub name: String,
     /// What the profile is for.
     pub summary: String,
-    /// The settings that the profile gives, by name. The user's own values take precedence, except
-    /// that they can only lower a limit (`from_scene` is `less`).
+    /// The settings of the profile: a value for each name. Values that the user gives take
+    /// precedence. For a limit (`from_scene` is `less`), the smaller of the two values applies.
     pub settings: BTreeMap<String, String>,
 }
 
@@ -235,9 +238,9 @@ impl Descriptor {
         Some(format!("profile `{}`: {error}", profile.name))
     }
 
-    /// Returns the settings that follow from a profile and the defaults, or from the defaults
-    /// alone. `None` if a setting has no default and the profile does not give it, or if there is
-    /// no such profile.
+    /// Returns the settings from the defaults and, if `profile` is given, from this profile.
+    /// Returns `None` if there is no such profile, or if a setting has neither a default nor a
+    /// value in the profile.
     pub fn settings(&self, profile: Option<&str>) -> Option<Settings> {
         Settings::resolve(self, profile, &BTreeMap::new()).ok()
     }

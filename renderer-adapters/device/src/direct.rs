@@ -1,19 +1,20 @@
-//! Direct voltage at a display: the mean of the written voltage over any 100 ms.
+//! Direct voltage at a display: the mean of the written voltage over a window of 100 ms.
 //!
 //! A carrier protects a finger from charge and direct voltage. The carrier may be lost in many
-//! ways: by a wrong rate, an effect, a clipped sample, a fault of the program. The mean voltage
-//! reveals all of these faults, so the last stage before the device limits it. This stage is the
-//! session for NI cards, and the host for native libraries. Samples over the limit are refused and
-//! the output goes to zero. They are not corrected, because a filter that removes the mean would
-//! hide the fault and change every sample.
+//! ways, such as a wrong rate, an effect, a clipped sample or a fault of the program. The mean
+//! voltage reveals all of these faults. Therefore, the last program part before the device limits
+//! the mean voltage. For NI cards, this part is the adapter's session; for native libraries, it is
+//! the host. If the mean voltage would exceed the limit, the samples are refused and the output
+//! goes to zero. The samples are not corrected, because a filter that removes the mean would hide
+//! the fault and change every sample.
 
 use crate::Settings;
 
 /// Length of the window whose mean is the direct voltage, seconds.
 const DIRECT_WINDOW_S: f64 = 0.1;
-/// Default limit of the direct voltage, for a display whose settings state none, volts.
+/// Default limit of the direct voltage, volts, for a display whose settings state no limit.
 pub const DIRECT_LIMIT_V: f64 = 1.0;
-/// Name of the setting in which a display states its limit.
+/// Name of the setting in which a display states its limit of the direct voltage.
 pub const DIRECT_SETTING: &str = "dc_limit_v";
 /// Relative tolerance, for rounding to `f32`.
 const ROUNDING: f64 = 1e-6;
@@ -38,7 +39,8 @@ pub struct Excess {
 }
 
 impl DirectVoltage {
-    /// Starts with 100 ms of zero volts. If `limit_v` is NaN, [`DIRECT_LIMIT_V`] applies.
+    /// Creates the window, filled with 100 ms of zero volts. If `limit_v` is NaN,
+    /// [`DIRECT_LIMIT_V`] applies.
     pub fn new(limit_v: f64, rate_hz: f64) -> Self {
         let frames = (DIRECT_WINDOW_S * rate_hz).round().max(1.0) as usize;
         Self {
@@ -54,8 +56,8 @@ impl DirectVoltage {
         Self::new(settings.number(DIRECT_SETTING), rate_hz)
     }
 
-    /// Returns the first of these samples at which the mean would exceed the limit if the device
-    /// played them next.
+    /// Returns the first sample at which the mean would exceed the limit if the device played
+    /// `samples` next.
     pub fn excess<T: Copy + Into<f64>>(&self, samples: &[T]) -> Option<Excess> {
         let frames = self.last_v.len();
         let most_v = self.limit_v * (1.0 + ROUNDING) * frames as f64;
@@ -75,7 +77,7 @@ impl DirectVoltage {
         None
     }
 
-    /// Adds samples that the device has accepted to the window.
+    /// Adds samples to the window after the device has accepted them.
     pub fn push<T: Copy + Into<f64>>(&mut self, samples: &[T]) {
         for sample in samples {
             let sample: f64 = (*sample).into();
@@ -95,7 +97,7 @@ impl DirectVoltage {
         self.sum_v / self.last_v.len() as f64
     }
 
-    /// Iterates backwards over the last 100 ms, beginning with the sample before the newest one.
+    /// Iterates backwards over the last 100 ms, beginning with the sample before the newest sample.
     /// The direction reverses at both ends of the window, so the iterator never ends.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();

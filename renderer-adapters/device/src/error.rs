@@ -46,7 +46,8 @@ pub enum DeviceError {
         mean_v: f64,
         limit_v: f64,
     },
-    /// The device ran dry: samples came too late. The output is at zero.
+    /// The samples for the output came too late, so the device had none to play. The output is at
+    /// zero.
     #[error("{device} ran dry after {frames} frames; {advice}")]
     Underflow {
         device: String,
@@ -54,7 +55,7 @@ pub enum DeviceError {
         frames: u64,
         advice: String,
     },
-    /// An input lost frames because they were read too late. It delivers nothing more.
+    /// An input lost frames because they were read too late. The input delivers no more frames.
     #[error("{device} lost samples after {frames} frames, which were read too late; {advice}")]
     Overrun {
         device: String,
@@ -81,8 +82,8 @@ pub enum DeviceError {
     /// No device of this name and direction is known.
     #[error("no {} `{wanted}`; there are {known}", noun(.direction))]
     Unknown { direction: Direction, wanted: String, known: String },
-    /// The device has the other direction: it is an input and was asked to play, or an output and
-    /// was asked to record.
+    /// The device has the wrong direction. A caller tried to play on an input, or to record from an
+    /// output.
     #[error("{device} is not an {wanted}; choose another device")]
     Direction { device: String, wanted: Direction },
     /// The descriptor, the capabilities or the stream that an adapter returned is invalid.
@@ -103,7 +104,7 @@ pub enum DeviceError {
 pub enum LibraryFault {
     /// The system cannot load the file.
     Load,
-    /// The library has no table, or one of another major version of the ABI.
+    /// The library has no table, or a table of another major version of the ABI.
     Marker,
     /// The table lacks a function that a device of its direction needs.
     Function,
@@ -114,8 +115,8 @@ pub enum LibraryFault {
 }
 
 impl DeviceError {
-    /// Creates the error for a setting that is unknown, missing or invalid. `what` says what is
-    /// wrong, and which values are allowed.
+    /// Creates the error for a setting that is unknown, missing or invalid. `what` states the
+    /// problem and the allowed values.
     pub fn setting(name: impl Into<String>, what: impl Into<String>) -> Self {
         Self::Setting { name: name.into(), what: what.into() }
     }

@@ -1,21 +1,22 @@
-//! Devices: an output plays samples of one quantity at one rate. An input records samples of
-//! several channels.
+//! Devices, which are outputs or inputs. An output plays samples of one quantity at one rate. An
+//! input records samples of several channels.
 //!
 //! An [`Adapter`] represents a family of devices with the same [`Direction`], such as the outputs
-//! of all sound cards. [`Adapter::open_output`] returns an open [`Output`], [`Adapter::open_input`]
-//! an open [`Input`]. An output reports its [`Capabilities`] and enforces its limits on every
-//! sample. This crate does not depend on textures.
+//! of all sound cards. [`Adapter::open_output`] returns an open [`Output`], and
+//! [`Adapter::open_input`] returns an open [`Input`]. An output reports its [`Capabilities`] and
+//! enforces its limits on every sample. This crate does not depend on textures.
 //!
 //! An adapter is either built into the program, or it comes from a native library that exports the
-//! C functions of [`abi`] ([`NativeAdapter`]). [`Devices`] finds both kinds. To write an adapter in
-//! Rust, implement the traits and call [`export_device!`].
+//! C functions of [`abi`] ([`NativeAdapter`]). [`Devices`] finds both kinds. To write a native
+//! library in Rust, implement the traits and call [`export_device!`].
 //!
 //! Outputs and inputs share one ABI with one table of functions. Only outputs have `capabilities`,
 //! `write` and `status`. Only inputs have `stream`, `start` and `read`.
 //!
-//! Models run in a sandbox. Devices do not, for two reasons: a device need not produce the same
-//! bits everywhere, and a WASM sandbox without imports cannot reach any hardware. Built-in adapters
-//! are therefore called directly. Their errors have the same types as the errors of a library.
+//! Models run in a sandbox, but devices do not. A device does not have to produce the same bits on
+//! every computer, and a WASM sandbox without imports cannot reach any hardware. Therefore, the
+//! host calls built-in adapters directly. Errors of built-in adapters have the same types as errors
+//! of native libraries.
 //!
 //! An output checks all samples of a call against its limits before it plays any of them. The host
 //! refuses a display voltage without a limit. After an error the output is at zero and stays there.

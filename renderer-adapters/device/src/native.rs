@@ -27,7 +27,7 @@ const USUAL_TEXT: usize = 16_384;
 /// Maximum number of attempts to read a text whose length changes from call to call.
 const TRIES: usize = 8;
 
-/// An adapter from a native library. Cheap to clone.
+/// An adapter from a native library. Cloning it is cheap, because clones share the loaded library.
 #[derive(Clone)]
 pub struct NativeAdapter {
     pub(crate) library: Arc<Library>,
@@ -43,7 +43,7 @@ pub(crate) struct Library {
 
 /// The failure of a call.
 pub(crate) enum CallFailure {
-    /// The library returned an error code with this text.
+    /// The library returned an error code and this error text.
     Code(Code, String),
     /// The library returned a result that the ABI does not allow.
     Answer(String),
@@ -81,8 +81,8 @@ impl NativeAdapter {
         unsafe { Self::from_pointer(&name, table) }
     }
 
-    /// Creates an adapter from a table that is linked into this program. `name` identifies it in
-    /// messages.
+    /// Creates an adapter from a table that is linked into this program. `name` identifies the
+    /// adapter in messages.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::load`].
@@ -154,7 +154,8 @@ impl NativeAdapter {
         }
     }
 
-    /// For checkers: [`Adapter::capabilities`] with lines of settings, which may be invalid.
+    /// For checkers: calls the library's `capabilities` with lines of settings, which may be
+    /// invalid.
     ///
     /// # Errors
     /// Returns the same errors as [`Adapter::capabilities`].
@@ -429,7 +430,7 @@ impl Drop for OpenHandle {
     }
 }
 
-/// An open output of a native library. Dropping it closes it.
+/// An open output of a native library. Dropping an output closes it.
 pub struct NativeOutput {
     opened: OpenHandle,
     capabilities: Capabilities,
@@ -463,7 +464,8 @@ impl NativeOutput {
     /// library refuses a closed handle. An app drops the device instead.
     ///
     /// # Errors
-    /// The error of the device. A second call must return that the handle is unknown.
+    /// Returns the error of the device. A second call must return the error that the handle is
+    /// unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         self.opened.close()
     }
@@ -541,7 +543,7 @@ impl Output for NativeOutput {
     }
 }
 
-/// An open input of a native library. Dropping it closes it.
+/// An open input of a native library. Dropping an input closes it.
 ///
 /// The host checks every rate, channel, count and sample, so that a faulty library cannot corrupt a
 /// recording unnoticed.
@@ -567,7 +569,8 @@ impl NativeInput {
     /// library refuses a closed handle. An app drops the device instead.
     ///
     /// # Errors
-    /// The error of the device. A second call must return that the handle is unknown.
+    /// Returns the error of the device. A second call must return the error that the handle is
+    /// unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         // Later reads must reach the library, because the library must refuse them.
         self.has_failed = false;

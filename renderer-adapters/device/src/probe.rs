@@ -50,9 +50,9 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
 }
 
 impl NativeAdapter {
-    /// Calls `open` with these settings, rate and block size, and returns the code and the text of
-    /// its refusal. If `open` succeeds instead, closes the device and returns `None`. For an input,
-    /// `rate_hz` and `block_frames` are 0.
+    /// Calls `open` with these settings, rate and block size, and returns the error code and the
+    /// error text of `open`. If `open` succeeds, closes the device and returns `None`. For an
+    /// input, `rate_hz` and `block_frames` are 0.
     pub fn refusal_of_open(
         &self,
         lines: &str,
@@ -70,11 +70,11 @@ impl NativeAdapter {
         Some((answer, self.library.last_error()))
     }
 
-    /// Fails unless every call refuses null and misaligned arrays and writes only within the given
-    /// length. For an input, the numbers of `format` are 0.
+    /// Checks that every call refuses null arrays and misaligned arrays, and that it writes only
+    /// within the given length. For an input, the numbers in `format` are 0.
     ///
     /// # Errors
-    /// Says which call is faulty, and what it did wrong.
+    /// Returns an error if a call is faulty. The error names the call and its fault.
     pub fn check_arrays(
         &self,
         settings: &Settings,

@@ -1,4 +1,5 @@
-//! Finds the adapters that a program can use: built in, or in native libraries.
+//! Finds the adapters that a program can use. They are built into the program or come from native
+//! libraries.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,15 +14,16 @@ const VARIABLE: &str = "HTEX_DEVICE_PATH";
 /// The user's folder of libraries, relative to the data folder.
 const FOLDER: &str = "htex/devices";
 
-/// Where to search for native libraries of devices. If two adapters have the same id, the first one
-/// found is used. The order is: `files`, `dirs`, the environment variable `HTEX_DEVICE_PATH`, the
-/// user's folder, the adapters built into the program.
+/// Where to search for native libraries of devices. The search has this order: `files`, `dirs`, the
+/// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, and the adapters
+/// built into the program. If two adapters of one direction have the same id, the adapter that is
+/// found first is used.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// Library files to load. A file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Folders of libraries. A folder that cannot be read is an error. A library in it that cannot
-    /// be loaded is only a [`Note`].
+    /// Folders of libraries. A folder that cannot be read is an error. If a library in a folder
+    /// cannot be loaded, the search continues and adds a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders that the environment variable names.
     pub env: bool,
@@ -96,10 +98,10 @@ impl std::fmt::Debug for AdapterEntry {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two adapters of one direction have the same id. The adapter found first is used.
+    /// Two adapters of one direction have the same id. The adapter that was found first is used.
     Shadowed { direction: Direction, id: String, used: Origin, shadowed: Origin },
     /// Two adapters of one direction with different ids have the same short name. The short name
-    /// means the adapter found first.
+    /// refers to the adapter that was found first.
     SameName {
         direction: Direction,
         name: String,
@@ -108,7 +110,8 @@ pub enum Note {
         /// The id of the other adapter, which must be written in full.
         other: String,
     },
-    /// A file or folder that the user did not name could not be loaded or read.
+    /// A library file could not be loaded, or a folder could not be read, and the user did not name
+    /// this file or folder explicitly.
     LeftOut { error: DeviceError },
 }
 
@@ -127,8 +130,8 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// The adapters that a program has found. An output and an input may share an id and a short name,
-/// e.g. the two directions of a sound card.
+/// The adapters that a program has found. An output and an input may have the same id and the same
+/// short name. For example, the two directions of a sound card do.
 #[derive(Debug, Clone, Default)]
 pub struct Devices {
     entries: Vec<AdapterEntry>,
@@ -143,7 +146,7 @@ impl Devices {
         devices
     }
 
-    /// Searches for adapters, and adds those linked into the program at the end.
+    /// Searches for adapters in native libraries. Then adds the adapters linked into the program.
     ///
     /// # Errors
     /// Returns an error if one of the search's `files` cannot be loaded, or one of its `dirs`
@@ -172,8 +175,8 @@ impl Devices {
         &self.entries
     }
 
-    /// Returns notes for the user about adapters that shadow others and libraries that could not be
-    /// loaded.
+    /// Returns notes for the user about libraries that could not be loaded, and about adapters with
+    /// the same id or the same short name as another adapter.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }

@@ -1,4 +1,4 @@
-//! The JSON Schemas of the documents that cross the ABI.
+//! The JSON Schemas of the documents that host and library exchange through the ABI.
 
 use htex_base::schema::crossing;
 use serde_json::Value;

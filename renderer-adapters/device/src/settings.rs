@@ -1,11 +1,11 @@
-//! Settings of a device. Values given by the user override the profile, which overrides the
-//! defaults.
+//! Settings of a device. Values from the user take precedence over the profile, and the profile
+//! takes precedence over the defaults.
 //!
 //! Only [`Settings::settle`] combines the user's choices with the settings that a scene file asks
 //! for.
 //!
-//! The host passes settings to a library as lines of text: every setting, with defaults applied. So
-//! a device written in C needs no JSON parser.
+//! The host passes settings to a library as lines of text, so that a device written in C needs no
+//! JSON parser. Every setting has a line, even if its value is the default.
 
 use std::collections::BTreeMap;
 
@@ -22,14 +22,14 @@ pub struct SettingRequests<'a> {
     pub profile: Option<&'a str>,
     /// Settings that the user gave one by one.
     pub given: &'a BTreeMap<String, String>,
-    /// Settings that a scene asks for. [`FromScene`] decides which of them take effect.
+    /// Settings in the scene file. [`FromScene`] determines which of them have an effect.
     pub asked: &'a BTreeMap<String, String>,
-    /// Whether the motion is live, i.e. read from a sensor during playback. If so,
+    /// Whether the motion is live, i.e. read from a sensor during playback. For a live motion,
     /// [`Setting::live_default`] replaces the default.
     pub live: bool,
 }
 
-/// A setting that a scene asks for and that takes no effect.
+/// A setting in a scene that has no effect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IgnoredSetting {
     /// Name of a setting of the descriptor.
@@ -39,9 +39,9 @@ pub struct IgnoredSetting {
 }
 
 impl Settings {
-    /// Combines the settings: `given` overrides `profile` (a name), which overrides the
-    /// descriptor's defaults. If `given` and the profile both set a limit ([`FromScene::Less`]),
-    /// the smaller value applies.
+    /// Combines settings. The values in `given` take precedence over the profile named `profile`,
+    /// and the profile takes precedence over the descriptor's defaults. If `given` and the profile
+    /// both set a limit ([`FromScene::Less`]), the smaller value applies.
     ///
     /// # Errors
     /// Returns an error if the profile or a setting is unknown, a setting is missing, or a value is
@@ -55,8 +55,8 @@ impl Settings {
         Ok(Self::settle(descriptor, &requests)?.0)
     }
 
-    /// Combines the settings as [`Self::resolve`] does, and applies the settings of a scene. Also
-    /// returns the scene's settings that take no effect.
+    /// Combines settings as [`Self::resolve`] does, and applies the settings of a scene. Also
+    /// returns the scene's settings that have no effect.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::resolve`].
@@ -112,7 +112,8 @@ impl Settings {
         Ok((Self(values), ignored))
     }
 
-    /// Returns the value of a setting. Empty if the adapter has no setting of this name.
+    /// Returns the value of a setting, or an empty text if the adapter has no setting with this
+    /// name.
     pub fn text(&self, name: &str) -> &str {
         self.0.get(name).map_or("", String::as_str)
     }
@@ -184,9 +185,9 @@ fn number(text: &str) -> f64 {
 /// What happens to a setting that a scene asks for.
 enum SceneRequest {
     Used,
-    /// The user gave a value, which applies instead.
+    /// The user gave a value, which takes precedence over the scene's value.
     Given,
-    /// It is not used, for this reason.
+    /// The setting is not used, for this reason.
     Ignored(String),
 }
 

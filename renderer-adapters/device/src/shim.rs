@@ -1,5 +1,5 @@
-//! Implements the C functions of the ABI with the device traits. Checks arguments and catches
-//! panics.
+//! Implements the C functions of the ABI by calling the device traits. The functions check their
+//! arguments and catch panics.
 //!
 //! The code that [`export_device!`](crate::export_device) generates uses this module. Do not use it
 //! directly.

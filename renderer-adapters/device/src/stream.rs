@@ -6,7 +6,8 @@ use crate::DeviceError;
 use crate::abi::{MAX_CHANNELS, MAX_NAME_BYTES, MAX_RATE_HZ, MIN_INPUT_RATE_HZ};
 use crate::descriptor::first_twice;
 
-/// The rate and the channels of an open input, which never change. They cross the ABI as JSON.
+/// The rate and the channels of an open input, which never change. A native library passes them to
+/// the host as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct InputStream {
@@ -22,7 +23,7 @@ pub struct InputStream {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Channel {
-    /// Name. It is the same each time the input is opened with the same settings.
+    /// Name. The name is the same each time the input is opened with the same settings.
     pub name: String,
     /// Symbol of the unit, such as `V`. Empty if the device does not know the unit.
     #[serde(default)]

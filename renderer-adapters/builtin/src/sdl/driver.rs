@@ -1,5 +1,5 @@
-//! The SDL library, which is loaded and initialised on first use. If several library files are in
-//! use, each is initialised once.
+//! The SDL library, which is loaded and initialised on first use. If the program uses several SDL
+//! libraries, each is initialised once.
 #![allow(unsafe_code)] // The library's functions are C.
 
 use htex_device::DeviceError;

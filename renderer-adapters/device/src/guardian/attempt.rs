@@ -1,5 +1,5 @@
-//! Attempts to set a display's output to zero without its guardian. Each attempt opens the device,
-//! which sets the output to zero.
+//! Attempts to set a display's output to zero after its guardian failed. Each attempt opens the
+//! device, and opening sets the output to zero.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};

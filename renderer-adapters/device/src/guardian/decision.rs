@@ -1,29 +1,31 @@
-//! What the player (the app's process) decides about its guardian: how long to wait for it, when to
-//! kill it, how to get the output to zero, and what to print.
+//! The decisions of the player (the app's process) about its guardian: how long to wait for the
+//! guardian, when to kill it, how to set the output to zero, and what to print.
 //!
-//! This is a state machine without a clock, process or pipe. The program runs it in `worker.rs`.
-//! The model checker (`cargo xtask prove zero`) runs the same code against a model of the guardian,
-//! the helpers, the card and the signals.
+//! This module is a state machine without a clock, process or pipe. The program runs the state
+//! machine in `worker.rs`. The model checker (`cargo xtask prove zero`) runs the same code against
+//! a model of the guardian, the helpers, the card and the signals.
 //!
-//! The player sends SIGKILL to a guardian that does not answer in time, which also ends a stopped
-//! process. The player then makes one attempt after another to set the output to zero, until one
-//! succeeds. A helper process makes the first attempt. A thread of the player makes the next one,
-//! because the helper program may be missing. After that, they alternate. The helper process comes
-//! first because a driver call that does not return blocks only that process, not the player.
+//! If a guardian does not answer in time, the player sends it SIGKILL, because SIGKILL ends even a
+//! stopped process. The player then attempts to set the output to zero, again and again until an
+//! attempt succeeds. A helper process makes the first attempt, because a driver call that does not
+//! return then blocks only the helper process, not the player. A thread of the player makes the
+//! second attempt, because the helper program may be missing. After that, helper process and thread
+//! alternate.
 
 use std::time::Duration;
 
-/// Time from detecting the guardian's failure to the first printed warning, unless the output is
-/// confirmed to be at zero before.
+/// Time from detecting the guardian's failure to the first printed warning. If the output is
+/// confirmed to be at zero within this time, no warning is printed.
 pub const CONFIRM: Duration = Duration::from_millis(500);
 /// Time between two printed warnings.
 pub const EVERY: Duration = Duration::from_millis(1_000);
-/// Longest time that a request may take by itself. A write with a longer timeout is sent as several
-/// requests.
+/// Longest time that a single request may take, without waiting for the buffer and the ramp. A
+/// write with a longer timeout is sent as several requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
 /// Longest time for opening a device, because a driver may take seconds to load.
 pub const OPENING: Duration = Duration::from_millis(10_000);
-/// Time that the guardian gets in addition to the request, the buffer and the ramp.
+/// Time that the player waits for an answer in addition to the times of the request, the buffer and
+/// the ramp.
 pub const GRACE: Duration = Duration::from_millis(500);
 /// Longest wait for a killed guardian to end. Its tasks hold the output until then.
 const GONE: Duration = Duration::from_millis(100);
@@ -33,10 +35,11 @@ const RETRY: Duration = Duration::from_millis(100);
 /// Longest duration of an attempt, because a driver may take seconds to load.
 const ATTEMPT: Duration = Duration::from_millis(5_000);
 
-/// How long the player waits at most, for one device.
+/// The longest times for which the player waits, for one device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Waits {
-    /// Longest time from the last sample to zero if nothing fails: the device's buffer and ramp.
+    /// Longest time from writing the last sample to an output at zero, if nothing fails. It is the
+    /// duration of the device's buffer and ramp.
     pub to_zero: Duration,
 }
 
@@ -51,8 +54,9 @@ impl Waits {
         self.to_zero + OPENING + GRACE
     }
 
-    /// Returns the longest wait for the answer when the device is dropped. With the time
-    /// [`CONFIRM`] that follows, dropping takes at most as long as [`Self::answer`].
+    /// Returns the longest wait for the answer when the device is dropped. After this wait, the
+    /// player may wait for [`CONFIRM`]. Both waits together are at most as long as
+    /// [`Self::answer`].
     pub fn abort(self) -> Duration {
         self.answer().saturating_sub(CONFIRM)
     }
@@ -70,7 +74,7 @@ pub enum By {
 /// An event that the player reacts to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// A caller sent a request and waits this long for its answer.
+    /// A caller sent a request. The player waits for the answer for at most this time.
     Asked(Duration),
     /// The guardian answered.
     Answered,
@@ -78,7 +82,7 @@ pub enum Event {
     PipeEnded,
     /// The guardian's process is gone.
     GuardianGone,
-    /// The caller drops the device and waits this long for the guardian to end.
+    /// The caller drops the device. The player waits for the guardian to end for at most this time.
     Closing(Duration),
     /// An attempt confirmed that the output is at zero.
     Zero,
@@ -107,20 +111,21 @@ pub enum Action {
     KillGuardian,
     /// Start the attempt with this number.
     Start(u32, By),
-    /// Give up the attempt with this number. If it is a process, send SIGKILL to it.
+    /// Give up the attempt with this number. If a process makes the attempt, send SIGKILL to this
+    /// process.
     GiveUp(u32),
     /// Print the warning "switch the amplifier off".
     Say,
-    /// After such a warning, print that the output is at zero.
+    /// Print that the output is at zero. This message follows a warning "switch the amplifier off".
     SayZero,
 }
 
-/// Why the player gave the guardian up.
+/// The reason why the player gave up the guardian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Why {
-    /// Its pipe ended.
+    /// The guardian's pipe ended.
     Ended,
-    /// It did not answer within this time.
+    /// The guardian did not answer within this time.
     Silent(Duration),
 }
 
@@ -178,7 +183,8 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Returns the actions for an event. `now` is the time since any fixed moment.
+    /// Returns the actions for an event. `now` is the current time, counted from any moment that is
+    /// the same for all calls.
     pub fn on(&mut self, event: Event, now: Duration) -> Vec<Action> {
         let mut actions = match event {
             Event::Asked(patience) => self.asked(patience, now),
@@ -195,7 +201,7 @@ impl Player {
         actions
     }
 
-    /// Returns when [`Event::Tick`] is due, unless another event comes before.
+    /// Returns the time at which [`Event::Tick`] is due if no other event comes earlier.
     pub fn wakes_at(&self) -> Option<Duration> {
         match &self.state {
             State::Idle | State::Closed => None,
@@ -214,18 +220,18 @@ impl Player {
         }
     }
 
-    /// Whether the player will do nothing more.
+    /// Whether the player has finished and will return no more actions.
     pub fn is_over(&self) -> bool {
         self.state == State::Closed
     }
 
-    /// Returns why the player gave the guardian up, if it did.
+    /// Returns the reason why the player gave up the guardian, or `None` if it did not.
     pub fn why(&self) -> Option<Why> {
         self.why
     }
 
-    /// Moves all times of the player back by `by`. The model checker uses this to keep its clock at
-    /// a fixed time. States that differ only in their time then compare equal.
+    /// Subtracts `by` from all times of the player. The model checker calls this function to keep
+    /// its clock at a fixed time, so that states that differ only in their time compare equal.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {

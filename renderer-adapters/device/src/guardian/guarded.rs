@@ -1,4 +1,4 @@
-//! The app's side: an output that passes its samples to another process.
+//! The app's side of the guardian: an output that passes its samples to another process.
 
 use std::fmt::Display as Show;
 use std::process::Command;
@@ -23,8 +23,8 @@ const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
 /// Maximum duration of the buffer, and of the ramp, that the app waits for, milliseconds.
 const MOST_MS: f64 = 10_000.0;
 
-/// Whether an output needs a guardian, because it could cause harm if it kept its last value. True
-/// for a display voltage at the pace of a clock.
+/// Whether an output needs a guardian, because the output could cause harm if it kept its last
+/// value. This is true for an output that plays display voltages at the pace of a clock.
 pub fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage
 }
@@ -43,15 +43,16 @@ pub fn not_started(error: impl Show) -> DeviceError {
 
 /// An output whose device is held by another process, the guardian.
 ///
-/// Each call waits at most buffer + ramp + 0.6 s for an answer of the guardian. The buffer and the
-/// ramp are the device's. Opening waits up to buffer + ramp + 10.5 s, and a write may also take its
-/// own timeout.
+/// Each call waits at most buffer + ramp + 0.6 s for an answer of the guardian, where buffer and
+/// ramp are the durations of the device's buffer and ramp. There are two exceptions. Opening waits
+/// at most buffer + ramp + 10.5 s. A write may in addition take the timeout that the caller passed.
 ///
 /// If no answer comes in time, the guardian is killed, and a second process sets the output to
-/// zero. If this is not confirmed within 0.5 s, the call returns an error that says so. A thread
-/// then prints every second that the amplifier must be switched off, until the output is confirmed
-/// to be at zero ([`crate::guardian::is_unconfirmed`]). Dropping the output takes at most buffer +
-/// ramp + 0.6 s in all.
+/// zero. If the second process does not confirm this within 0.5 s, the call returns an error, which
+/// states that the output may not be at zero. A thread then prints every second that the amplifier
+/// must be switched off, until the output is confirmed to be at zero
+/// ([`crate::guardian::is_unconfirmed`]). In total, dropping the output takes at most buffer + ramp
+/// + 0.6 s.
 pub struct GuardedOutput {
     worker: Mutex<Sender<Message>>,
     name: String,
@@ -60,8 +61,9 @@ pub struct GuardedOutput {
 }
 
 impl GuardedOutput {
-    /// Starts the helper program, which opens the device. If the device comes from a library, the
-    /// program's last arguments are `--device-file` and the library's file.
+    /// Starts the helper program, which opens the device. If the device comes from a native
+    /// library, this function adds the arguments `--device-file` and the library's file to the
+    /// command of the helper program.
     ///
     /// # Errors
     /// Returns an error if the program cannot be started or does not answer, or if the program

@@ -10,7 +10,8 @@ use crate::guardian::message::{Answer, FINISH, Opening, STATUS, WRITE, put, read
 /// Holds a device for the app at the other end of two pipes. Returns when the pipe `from` ends. In
 /// a helper program, the pipes are its standard input and output.
 ///
-/// Call it in a program that ignores signals, so that only the end of the pipe ends the program.
+/// Call this function in a program that ignores signals, so that only the end of the pipe `from`
+/// ends the program.
 pub fn hold(
     find: impl FnOnce(&str) -> Result<AdapterEntry, DeviceError>,
     from: impl Read,

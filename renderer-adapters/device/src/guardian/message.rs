@@ -26,7 +26,7 @@ pub(crate) enum Answer {
     Done(u64),
     Status([f64; 5]),
     Failed(String),
-    /// The device ran dry ([`DeviceError::Underflow`]).
+    /// The device had no more samples to play ([`DeviceError::Underflow`]).
     Dry {
         device: String,
         frames: u64,

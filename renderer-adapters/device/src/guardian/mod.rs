@@ -1,17 +1,18 @@
-//! The guardian: a second process that holds the output of a display that a finger touches. No
-//! voltage stays at the output, however the first process ends.
+//! The guardian: a second process that holds the output of a display that a finger touches. However
+//! the app's process ends, the guardian ensures that no voltage stays at the output.
 //!
-//! A signal that kills, stops or hangs the app reaches only the app. The guardian is in its own
+//! A signal that kills or stops the app does not reach the guardian. The guardian is in its own
 //! process group and receives no signals from the terminal's keys. When the pipe from the app
-//! closes, the guardian plays the samples it still has (at most the device's buffer), sets the
-//! output to zero, and exits. A device whose buffer runs dry sets its output to zero by itself.
+//! closes, the guardian plays the samples that are still in the device's buffer, sets the output to
+//! zero, and exits. If the app hangs and the pipe stays open, the device's buffer becomes empty,
+//! and the device then sets its output to zero by itself.
 //!
-//! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
-//! process, which sets the output to zero. [`decision`] decides when and how.
+//! If the guardian ends before the app, is stopped or hangs, the app kills it and starts a second
+//! helper process, which sets the output to zero. The module [`decision`] determines when and how.
 //!
-//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] says so. The helper program is the
-//! command `htex guard` ([`htex`]), or a program of the app that calls [`hold`]. An app needs its
-//! own helper program for devices that the command `htex` does not have.
+//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] returns true. The helper program is
+//! the command `htex guard` ([`htex`]), or a program of the app that calls [`hold`]. An app needs
+//! its own helper program for devices that the command `htex` does not have.
 //!
 //! ```no_run
 //! use std::time::Duration;

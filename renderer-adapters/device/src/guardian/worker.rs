@@ -1,7 +1,8 @@
-//! The player's thread that talks to the guardian and carries out what
-//! [`crate::guardian::decision`] decides.
+//! The player's thread that talks to the guardian and executes the actions of
+//! [`crate::guardian::decision`].
 //!
-//! It never blocks. Pipes, attempts and standard error may all hang, so each has its own thread.
+//! This thread never blocks. Pipes, attempts and standard error may all hang, so each of them has
+//! its own thread.
 
 use std::io::Write;
 use std::process::Child;
@@ -27,8 +28,8 @@ static UNCONFIRMED: AtomicUsize = AtomicUsize::new(0);
 
 /// Whether the output of a display may have kept a voltage after its guardian failed. While this is
 /// true, a thread keeps trying to set the output to zero, and prints every second that the
-/// amplifier must be switched off. A program should not exit as long as this is true, because that
-/// would end the thread.
+/// amplifier must be switched off. A program should not exit as long as this is true, because its
+/// exit would end the thread.
 pub fn is_unconfirmed() -> bool {
     UNCONFIRMED.load(Ordering::SeqCst) > 0
 }

@@ -1,11 +1,12 @@
 //! Estimation of poles and zeros from a power spectrum.
 //!
 //! Poles and zeros depend on each other, so the fit estimates them alternately, in several rounds.
-//! It divides the spectrum by the spectrum of the zeros and finds the poles with the Yule–Walker
-//! method. For the zeros, it inverts the spectrum, multiplies it by the spectrum of the poles, and
-//! finds the poles of the result. The fit keeps the round with the smallest Itakura–Saito distance
-//! at the best level. In this round, the spectrum is most likely to be a spectrum of Gaussian
-//! noise. No resonance is narrower than a bin, because the spectrum cannot show such a resonance.
+//! For the poles, the fit divides the spectrum by the spectrum of the zeros and applies the
+//! Yule–Walker method. For the zeros, the fit inverts the spectrum, multiplies it by the spectrum
+//! of the poles, and again applies the Yule–Walker method. The fit keeps the round with the
+//! smallest Itakura–Saito distance at the best level. In this round, the spectrum is most likely to
+//! be a spectrum of Gaussian noise. No resonance is narrower than a bin, because the spectrum
+//! cannot show such a resonance.
 
 use alloc::vec::Vec;
 

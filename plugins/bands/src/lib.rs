@@ -8,9 +8,9 @@
 //! energies, but a curve with these energies. The curve is in decibels and piecewise linear, on the
 //! frequency axis on which the bands are equally spaced. Its knots are at the bands' apexes.
 //!
-//! By default, there are thirty knots from edge to edge of the asset's frequency band. They have
-//! steps of 1 dB, and their differences are stored in a Rice code. The table has medians over 15
-//! simulated recordings:
+//! By default, there are thirty knots from edge to edge of the asset's frequency band. The levels
+//! of the knots are in steps of 1 dB, and the differences of levels are stored in a Rice code. The
+//! table has medians over 15 simulated recordings:
 //!
 //! | knots | storage | third-octave error |
 //! |---|---|---|

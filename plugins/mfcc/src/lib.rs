@@ -1,7 +1,7 @@
 //! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. The coefficients are the
-//! first terms of the cosine transform of the logarithmic energies in mel bands. They describe a
-//! smoothed spectrum, because the other terms are left out (section "Mel Frequency Cepstral
-//! Coefficients" of the paper).
+//! first terms of the cosine transform of the logarithmic energies in mel bands. These coefficients
+//! describe a smoothed spectrum, because the higher terms are left out (section "Mel Frequency
+//! Cepstral Coefficients" of the paper).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

@@ -32,7 +32,7 @@ const LOW_PASS: usize = 2;
 
 /// Files store an order in steps of 1/20: 1 dB per decade.
 const ORDER_STEP: f64 = 0.05;
-/// Highest filter order. It corresponds to a slope of 400 dB per decade.
+/// Highest filter order. This order gives a slope of 400 dB per decade.
 pub const MAX_ORDER: f64 = 20.0;
 
 const fn steps(scale: f64) -> Store {

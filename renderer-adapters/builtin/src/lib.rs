@@ -55,8 +55,8 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// A device that is built in only with a Cargo feature. It consists of an output and an input with
-/// the same name.
+/// A device that is built in only with a Cargo feature. The device consists of an output and an
+/// input with the same name.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,

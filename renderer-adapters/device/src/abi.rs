@@ -12,8 +12,8 @@
 //! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order of the
 //! descriptor. The host passes every setting, after it has applied the profile and the defaults.
 //!
-//! Samples of an output are `f32`. Samples of an input are `f64`. They are interleaved: a frame
-//! consists of one sample of each channel, and the frames follow one another.
+//! Samples of an output are `f32`. Samples of an input are `f64`. Samples of an input are also
+//! interleaved: a frame consists of one sample of each channel, and the frames follow one another.
 
 /// Major version: a host loads only devices of its own major version.
 pub const ABI_MAJOR: u32 = 1;
@@ -74,7 +74,8 @@ pub enum Code {
     Busy = -5,
     /// A sample is over the limit or not a number; the output is at zero.
     OverLimit = -6,
-    /// The output ran out of samples and is at zero. The text says what to do.
+    /// The output ran out of samples and is at zero. The error text tells the user how to avoid
+    /// this error.
     Underflow = -7,
     /// The call came before `start`, after `finish` or after an error.
     Closed = -8,
@@ -86,7 +87,8 @@ pub enum Code {
     Panicked = -11,
     /// Any other failure; see the last-error text.
     Failed = -12,
-    /// Frames of an input were lost because they were read too late. The text says what to do.
+    /// Frames of an input were lost because they were read too late. The error text tells the user
+    /// how to avoid this error.
     Overrun = -13,
     /// An input has ended (e.g. at the end of a file); there are no more frames.
     End = -14,

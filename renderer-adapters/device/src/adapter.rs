@@ -10,10 +10,10 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 
 /// A family of devices, such as all sound cards. Implement this trait to add a device.
 ///
-/// An adapter describes its devices and opens them. All devices of an adapter have one direction
-/// ([`Descriptor::direction`]): they are outputs, which play samples, or inputs, which record
-/// samples. An adapter implements the methods of its direction. By default, the methods of the
-/// other direction return [`DeviceError::Direction`].
+/// An adapter describes its devices and opens them. All devices of an adapter have the same
+/// direction ([`Descriptor::direction`]): an adapter has either outputs, which play samples, or
+/// inputs, which record samples. An adapter implements the methods of its direction. By default,
+/// the methods of the other direction return [`DeviceError::Direction`].
 ///
 /// | direction | implement, besides [`Self::descriptor`] and [`Self::endpoints`] |
 /// |---|---|
@@ -244,7 +244,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///   channels, its adapter needs a setting that determines what each channel plays.
 /// - A paced output of display voltage must keep its mean voltage within
 ///   [`DirectVoltage`](crate::DirectVoltage). For a native library, the host checks the mean
-///   voltage. A built-in adapter must check it itself.
+///   voltage. A built-in adapter must itself check the mean voltage.
 /// - The host checks the rate, channels, counts and samples of an input from a native library
 ///   ([`NativeInput`](crate::NativeInput)). The host does not check a built-in input.
 /// - The adapter must check everything else. `htex device check` tests each guarantee of the ABI on
@@ -257,20 +257,20 @@ pub trait Adapter: Send + Sync {
     /// Lists the devices that are connected now. An empty list is not an error. `[any thread]`
     ///
     /// # Errors
-    /// Returns an error if a driver is missing: the message says what to install.
+    /// Returns an error if a driver is missing. The message names the software to install.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
     /// Reports what an output with these settings can do, without opening it. `[any thread]`
     ///
     /// # Errors
-    /// Returns an error if a setting is not usable, or the device is not connected.
-    /// [`DeviceError::Direction`] for an input.
+    /// Returns an error if a setting is not usable, or the device is not connected. Returns
+    /// [`DeviceError::Direction`] if the adapter has inputs.
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
         let _ = settings;
         Err(is_not(self.descriptor(), Direction::Output))
     }
 
-    /// Opens an output. It is silent and at zero until the first write. `[any thread]`
+    /// Opens an output. The output is silent and at zero until the first write. `[any thread]`
     ///
     /// # Errors
     /// Returns the same errors as [`Self::capabilities`]. Also returns an error if the device does
@@ -284,11 +284,11 @@ pub trait Adapter: Send + Sync {
         Err(is_not(self.descriptor(), Direction::Output))
     }
 
-    /// Opens an input. It does not sample before [`Input::start`]. `[any thread]`
+    /// Opens an input. The input does not sample before [`Input::start`]. `[any thread]`
     ///
     /// # Errors
-    /// Returns an error if a setting is not usable, or the device is not connected.
-    /// [`DeviceError::Direction`] for an output.
+    /// Returns an error if a setting is not usable, or the device is not connected. Returns
+    /// [`DeviceError::Direction`] if the adapter has outputs.
     fn open_input(&self, settings: &Settings) -> Result<Box<dyn Input>, DeviceError> {
         let _ = settings;
         Err(is_not(self.descriptor(), Direction::Input))
@@ -352,8 +352,8 @@ pub trait Output: Send {
 ///
 /// [`Adapter`] has a complete example.
 pub trait Input: Send {
-    /// Returns the rate and the channels, in the order of the samples within a frame. They never
-    /// change. `[one thread at a time]`
+    /// Returns the rate and the channels, in the order of the samples within a frame. Rate and
+    /// channels never change. `[one thread at a time]`
     fn stream(&self) -> &InputStream;
 
     /// Starts sampling. `[one thread at a time; may wait]`

@@ -197,7 +197,7 @@ impl Quantity {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// These rates, ascending.
+    /// Only the listed rates, in ascending order.
     List(
         #[cfg_attr(
             feature = "schemars",

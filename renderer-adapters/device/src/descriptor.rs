@@ -18,7 +18,7 @@ pub struct Descriptor {
     pub name: String,
     /// Semantic version.
     pub version: String,
-    /// One sentence that says what the adapter drives or reads.
+    /// One sentence about the hardware or file that the adapter drives or reads.
     pub summary: String,
     /// Whether the adapter's devices play or record.
     pub direction: Direction,

@@ -1,5 +1,5 @@
-//! Finds the adapters that a program can use. They are built into the program or come from native
-//! libraries.
+//! Finds the adapters that a program can use. An adapter is built into the program or comes from a
+//! native library.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -93,7 +93,7 @@ impl std::fmt::Debug for AdapterEntry {
     }
 }
 
-/// Something that the user should know about the search, but that is not an error.
+/// A note for the user about the search: a problem that is not an error.
 #[allow(missing_docs)] // The variants say what a field is.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -146,7 +146,8 @@ impl Devices {
         devices
     }
 
-    /// Searches for adapters in native libraries. Then adds the adapters linked into the program.
+    /// Searches for adapters in native libraries, and adds the adapters linked into the program at
+    /// the end.
     ///
     /// # Errors
     /// Returns an error if one of the search's `files` cannot be loaded, or one of its `dirs`

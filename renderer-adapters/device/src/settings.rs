@@ -1,8 +1,8 @@
 //! Settings of a device. Values from the user take precedence over the profile, and the profile
 //! takes precedence over the defaults.
 //!
-//! Only [`Settings::settle`] combines the user's choices with the settings that a scene file asks
-//! for.
+//! [`Settings::settle`] is the only function that combines the user's choices with the settings in
+//! a scene file.
 //!
 //! The host passes settings to a library as lines of text, so that a device written in C needs no
 //! JSON parser. Every setting has a line, even if its value is the default.

@@ -22,8 +22,8 @@ const CHANNELS: u16 = 2;
 pub(crate) enum Channels<'a> {
     /// All channels of the card play the samples.
     All,
-    /// The card has one channel for each factor. A channel plays the samples multiplied by its
-    /// factor.
+    /// The card has one channel for each factor. A channel plays the samples multiplied by the
+    /// channel's factor.
     Factors(&'a [f32]),
 }
 

@@ -8,8 +8,8 @@
 //! model.
 //!
 //! The motor is at rest before the first block and after the last block. The thread also stops the
-//! motor after every error, when the device is dropped, and when samples come too late. It stops
-//! the motor even if the thread that writes the samples hangs.
+//! motor after every error, when the device is dropped, and when samples come too late. The motor
+//! stops even if the thread that writes the samples hangs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

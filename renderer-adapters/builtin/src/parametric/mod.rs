@@ -11,8 +11,8 @@
 //!
 //! The adapter has its own session without graphics (`XR_MND_headless`), so that a program without
 //! graphics, such as the command `htex`, can play on a controller. A session ends when its last
-//! device is closed. If the program hangs, the runtime ends a stream of points after 50 ms. It ends
-//! a stream of samples when it has played all samples that it received.
+//! device is closed. If the program hangs, the runtime ends a stream of points after 50 ms. A
+//! stream of samples ends when the runtime has played all samples that it received.
 #![deny(unsafe_code)]
 
 mod element;

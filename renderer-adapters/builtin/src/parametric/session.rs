@@ -1,7 +1,7 @@
 //! An OpenXR session with one haptic action on both hands.
 //!
-//! A runtime allows a program only one session at a time. So the devices of both hands share a
-//! session, which ends when the last device is closed.
+//! A runtime allows a program only one session at a time. Therefore, the devices of both hands
+//! share a session, which ends when the last device is closed.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
 use std::collections::BTreeMap;

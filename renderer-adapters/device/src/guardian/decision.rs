@@ -1,5 +1,5 @@
-//! The decisions of the player (the app's process) about its guardian: how long to wait for the
-//! guardian, when to kill it, how to set the output to zero, and what to print.
+//! The decisions of the player (the app's process) about its guardian. The player decides how long
+//! to wait for the guardian, when to kill it, how to set the output to zero, and what to print.
 //!
 //! This module is a state machine without a clock, process or pipe. The program runs the state
 //! machine in `worker.rs`. The model checker (`cargo xtask prove zero`) runs the same code against
@@ -38,8 +38,8 @@ const ATTEMPT: Duration = Duration::from_millis(5_000);
 /// The longest times for which the player waits, for one device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Waits {
-    /// Longest time from writing the last sample to an output at zero, if nothing fails. It is the
-    /// duration of the device's buffer and ramp.
+    /// Longest time from writing the last sample to an output at zero, if nothing fails. This time
+    /// is the duration of the device's buffer and ramp.
     pub to_zero: Duration,
 }
 

@@ -24,7 +24,7 @@ const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
 const MOST_MS: f64 = 10_000.0;
 
 /// Whether an output needs a guardian, because the output could cause harm if it kept its last
-/// value. This is true for an output that plays display voltages at the pace of a clock.
+/// value. An output needs a guardian if it plays display voltages at the pace of a clock.
 pub fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage
 }

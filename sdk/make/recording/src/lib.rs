@@ -1,5 +1,5 @@
 //! Recordings of a finger sliding on a texture, and the readers of their files. The crate always
-//! reads CSV. It reads the other [`FORMATS`] if it is built with their features.
+//! reads CSV. Reading any other of the [`FORMATS`] needs a Cargo feature.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -13,8 +13,8 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! An existing library reads a format if that library validates its input. This crate has its own
-//! readers for the other formats. All readers skip columns that are not used. If a file states a
+//! An existing library reads a format if that library validates its input. For all other formats,
+//! this crate has its own readers. All readers skip columns that are not used. If a file states a
 //! size that is larger than its contents, no reader allocates memory for the stated size.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -8,7 +8,7 @@ use crate::recording::{MAX_RATE_HZ, check_rate};
 use crate::tracker::Tracker;
 use crate::value_limit::{MOST_VALUES, ValueLimit};
 
-/// Options for reading a recording. They supply facts that the file does not state.
+/// Options for reading a recording. An option supplies a fact that the file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ReadOptions {
@@ -20,9 +20,9 @@ pub struct ReadOptions {
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// The physical value of a full-scale sample (1.0), in the quantity's unit. It applies to WAV,
-    /// FLAC and NPY files that are read without a column map. Without a scale, the reader assumes 1
-    /// and warns.
+    /// The physical value of a full-scale sample (1.0), in the quantity's unit. This scale applies
+    /// to WAV, FLAC and NPY files that are read without a column map. Without a scale, the reader
+    /// assumes 1 and warns.
     pub scale: Option<f64>,
     /// Start of the part to read, in seconds after the file's first sample.
     pub from_s: Option<f64>,

@@ -133,9 +133,9 @@ impl fmt::Display for RaisedRanges {
 ///
 /// # Errors
 /// Returns the same errors as [`read_recording`](crate::read_recording) for a CSV. Also returns an
-/// error if a number is out of range. Frequencies must increase from row to row and be from 0 to
-/// 1e9 Hz, magnitudes must be 0 or from 1e-9 to 1e9, and the absolute value of a phase must be at
-/// most 1e9 radians. The error names the line.
+/// error if a number is out of range. Frequencies must be from 0 to 1e9 Hz and increase from row to
+/// row. Magnitudes must be 0 or from 1e-9 to 1e9. Phases must be from -1e9 to 1e9 radians. The
+/// error names the line.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
     let read = InputFile::file(path).and_then(response);
     read.map_err(|fault| fault.in_file(&file_name(path)))

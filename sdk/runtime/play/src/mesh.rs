@@ -41,8 +41,8 @@ const ON_SIDE: f64 = 1e-9;
 /// that condition's parameters without interpolation.
 const NO_WEIGHT: f64 = 1e-12;
 
-/// The weights with which a motion mixes up to three conditions. They sum to one and are ordered by
-/// ascending speed, then by ascending force.
+/// The weights with which a motion mixes up to three conditions. The weights sum to one. They are
+/// ordered by ascending speed, and conditions with equal speeds by ascending force.
 ///
 /// ```
 /// use htex::play::Mesh;
@@ -134,8 +134,8 @@ struct Side {
 }
 
 impl Mesh {
-    /// Makes a mesh of one or more points: speed (mm/s) and force (newtons). Both must be finite
-    /// and not negative.
+    /// Makes a mesh of one or more points: speed (mm/s) and force (newtons). Speeds and forces must
+    /// be finite and not negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
         triangulation::mesh(conditions)
     }

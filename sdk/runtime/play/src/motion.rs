@@ -18,12 +18,13 @@ pub struct Motion {
     /// Scanning speed, mm/s, finite. A voice of a texture expects the speed without a direction and
     /// refuses a negative value. In a scene, the speed is negative on the back stroke.
     pub speed_mm_s: f64,
-    /// Normal force, newtons. It must be finite and not negative.
+    /// Normal force, newtons. The force must be finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm. It must be finite and may have either sign. `None` if unknown.
-    pub position_mm: Option<f64>,
-    /// Place on the surface, x and y, mm. Both must be finite and may have either sign. `None` if
+    /// Position along the path, mm. The position must be finite and may have either sign. `None` if
     /// unknown.
+    pub position_mm: Option<f64>,
+    /// Place on the surface, x and y, mm. Both coordinates must be finite and may have either sign.
+    /// `None` if unknown.
     pub place_mm: Option<[f64; 2]>,
 }
 

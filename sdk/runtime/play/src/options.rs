@@ -80,8 +80,8 @@ impl VoiceOptions {
     }
 
     /// Sets the ceiling of the level at motions outside the recorded range, as a multiple of the
-    /// strongest recorded level. The ceiling must be above 0 and finite. It limits how far a motion
-    /// can raise the level, but it never lowers a recorded level.
+    /// strongest recorded level. The ceiling must be above 0 and finite. The ceiling limits how far
+    /// a motion can raise the level, but it never lowers a recorded level.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;

@@ -14,7 +14,7 @@ const MIXED: usize = 3;
 /// A stream of unit-RMS samples at the model's own rate, and the level to multiply them by. A
 /// program that renders many textures can add their sources and resample the sum once, whereas a
 /// [`crate::Voice`] resamples a single texture. A source interpolates between conditions. The
-/// program must apply the other effects of a motion ([`crate::Effects`]) itself.
+/// program must itself apply all effects of a motion that [`crate::Effects`] lists.
 ///
 /// ```no_run
 /// use htex::{Texture, VoiceOptions};

@@ -97,8 +97,9 @@ impl Texture {
     /// Loads the embedded model with this id.
     ///
     /// # Errors
-    /// Returns an error if the asset embeds no model with this id, if the model cannot be loaded,
-    /// or if the model's id or version differs from the id or version that the asset declares.
+    /// Returns an error if the asset embeds no model with this id, or if the model cannot be
+    /// loaded. Also returns an error if the model's id or version differs from the id or version
+    /// that the asset declares.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -208,9 +209,9 @@ impl Texture {
     }
 
     /// Returns the representations from the best to the worst. Representations that this program
-    /// can run come first, then the others. Within each group, representations with a measured
-    /// error come first, ordered by [`htex_format::Representation::error_db`] from small to large.
-    /// Representations with equal errors keep the order of the file.
+    /// can run come before representations that it cannot run. Within each group, representations
+    /// with a measured error come first, ordered by [`htex_format::Representation::error_db`] from
+    /// small to large. Representations with equal errors keep the order of the file.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;

@@ -24,8 +24,8 @@ const ADDED: usize = 256;
 const RAMP_S: f64 = 0.010;
 
 /// A voice: an endless stream of samples in the asset's unit
-/// ([`Texture::quantity`](crate::Texture::quantity)). It follows the finger's motion with the same
-/// [`Effects`](crate::Effects) as a scene. A voice is [`Send`]: one thread can make it, and an
+/// ([`Texture::quantity`](crate::Texture::quantity)). A voice follows the finger's motion with the
+/// same [`Effects`](crate::Effects) as a scene. A voice is [`Send`]: one thread can make it, and an
 /// audio thread can render it.
 ///
 /// ```no_run
@@ -328,8 +328,8 @@ impl Voice {
     }
 
     /// Returns the level and the mean frequency of the samples rendered since the last call, or
-    /// since the start if this is the first call. These samples include all effects, the gain and
-    /// the limiter. Does not allocate, lock or do I/O.
+    /// since the start if this is the first call. All effects, the gain and the limiter are
+    /// included in the level and the frequency. Does not allocate, lock or do I/O.
     ///
     /// Also writes the mean square in each band ([`VoiceOptions::with_envelope_bands`]) to `bands`,
     /// in the square of the asset's unit. `bands` may be empty.

@@ -52,9 +52,9 @@ pub const MOST_FORCE_N: f32 = 20.0;
 /// Time for which the player holds the last plausible motion while readings are not plausible,
 /// seconds.
 pub const HOLD_S: f32 = 0.1;
-/// Lowest ratio of a speed to the nearest speed of the grid. It is also the lowest factor by which
-/// frequencies change.
+/// Lowest ratio of a speed to the nearest speed of the grid. This ratio is also the lowest factor
+/// by which frequencies change.
 pub const MIN_RATIO: f32 = 0.0625;
-/// Highest ratio of a speed to the nearest speed of the grid. It is also the highest factor by
-/// which frequencies change.
+/// Highest ratio of a speed to the nearest speed of the grid. This ratio is also the highest factor
+/// by which frequencies change.
 pub const MAX_RATIO: f32 = 8.0;

@@ -9,11 +9,11 @@
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
 //!
-//! Three rules make the bits identical. The code does not fuse multiplications with additions. It
-//! computes cosines, logarithms and powers with polynomials. It takes the square root from `libm`.
-//! The test `sdk/runtime/play/tests/it/bake_board.rs` compares the samples of an emulated
-//! Cortex-M4F with the host's samples. `c/htex_player.c` is the same player in C and renders
-//! bit-identical samples (`tests/it/c.rs`).
+//! The bits are identical because the code follows three rules. No multiplication is fused with an
+//! addition. Cosines, logarithms and powers are computed with polynomials. The square root is the
+//! function of the crate `libm`. The test `sdk/runtime/play/tests/it/bake_board.rs` compares the
+//! samples of an emulated Cortex-M4F with the host's samples. `c/htex_player.c` is the same player
+//! in C and renders bit-identical samples (`tests/it/c.rs`).
 #![no_std]
 #![forbid(unsafe_code)]
 

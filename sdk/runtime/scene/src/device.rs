@@ -24,8 +24,8 @@ use crate::rules as rule;
 /// come from untrusted sources.
 const DRIVER: &str = "driver";
 
-/// Device options from the program that loads a scene. They take precedence over the scene's
-/// options.
+/// Device options from the program that loads a scene. The program's options take precedence over
+/// the scene's options.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
     /// Adapter to use instead of the scene's adapter. If it is given, the scene's whole `device`

@@ -210,8 +210,8 @@ impl Levels {
     }
 }
 
-/// Limits for choosing representations. If both limits are set, the planner chooses among the
-/// representations that meet both limits. It takes the representation with the smallest error.
+/// Limits for choosing representations. If both limits are set, the planner chooses the
+/// representation with the smallest error among the representations that meet both limits.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {

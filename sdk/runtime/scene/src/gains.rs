@@ -34,8 +34,8 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
-    /// Identifier of the texture ([`texture_id`]). It is empty in legacy entries, which identify
-    /// the texture by the hash of a file.
+    /// Identifier of the texture ([`texture_id`]). The identifier is empty in legacy entries, which
+    /// identify the texture by the hash of a file.
     #[serde(default)]
     pub texture: String,
     /// Id of the device's adapter.
@@ -120,9 +120,9 @@ impl Gains {
         Ok(blake3::hash(&fs::read(file)?).to_hex().to_string())
     }
 
-    /// Returns the path of the user's file of gains. It is `gains.json` in the folder
-    /// `$HTEX_CONFIG_DIR` if this variable is set, otherwise in the folder `htex` in the user's
-    /// configuration folder. Returns `None` if there is no configuration folder.
+    /// Returns the path of the user's file of gains. The file `gains.json` is in the folder
+    /// `$HTEX_CONFIG_DIR` if this variable is set. Otherwise it is in the folder `htex` in the
+    /// user's configuration folder. Returns `None` if there is no configuration folder.
     pub fn user_file() -> Option<PathBuf> {
         htex_host::folders::config().map(|folder| folder.join("gains.json"))
     }

@@ -2,10 +2,10 @@
 //! finds the shortest chain of processing stages that plays a scene, and states a reason for every
 //! stage that it includes or leaves out. The renderer runs exactly the planned chain.
 //!
-//! These modules lead from a scene to samples:
+//! Five modules, in this order, lead from a scene to samples:
 //!
 //! 1. `load` reads the scene file and the files that the scene names: assets, trace and frequency
-//!    response. It reports problems as findings.
+//!    response. The module reports problems as findings.
 //! 2. `requirements` simulates the motion as the renderer will play it. The simulation determines
 //!    which surfaces are touched, which speeds and forces occur, and what the device needs.
 //! 3. `representation` chooses the model of each surface within the scene's budget of time and
@@ -14,8 +14,9 @@
 //!    needs. A function in the table decides for each effect whether the scene needs it. The plan
 //!    gives a reason for each decision.
 //! 5. `render` pulls samples through the chain: each stage requests its input from the stage before
-//!    it. The chain starts with the voice of each surface and the surface's stages (`track`). Then
-//!    surfaces with the same sample rate are added and resampled. The device's stages come last.
+//!    it. The chain starts with the voice of each surface and the surface's stages (`track`). The
+//!    samples of surfaces with the same sample rate are then added and resampled. The device's
+//!    stages come last.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -231,7 +231,8 @@ impl Scene {
         all.map(|path| self.folder.join(path)).collect()
     }
 
-    /// Returns the physical quantity of the textures. It is the same for all textures of a scene.
+    /// Returns the physical quantity of the textures. All textures of a scene have the same
+    /// quantity.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
         first.map_or(Quantity::default(), Texture::quantity)

@@ -182,8 +182,8 @@ impl Renderer {
     }
 
     /// Fills `out` with the next samples, in the unit of the device, and returns their number. At
-    /// the end of the scene, this number is smaller than the length of `out`, and the rest of `out`
-    /// is zero. The samples do not depend on the length of `out`.
+    /// the end of the scene, this number is smaller than the length of `out`. The samples of `out`
+    /// after the end are zero. The samples do not depend on the length of `out`.
     ///
     /// # Errors
     /// Returns the first error of a model since the last call. Even then, `out` is filled: the

@@ -1,5 +1,5 @@
-//! The requirements of a scene. They are derived from the scene, its assets and its device before
-//! any stage is built.
+//! The requirements of a scene. The requirements are derived from the scene, its assets and its
+//! device before any stage is built.
 
 use htex_device::{Capabilities, Quantity};
 use htex_play::Motion;

@@ -75,9 +75,9 @@ impl Trace {
     /// become 0.
     ///
     /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last valid row for at most 100
-    /// ms. After these 100 ms, impossible rows become rows without contact. This happens before
-    /// interpolation, because a value interpolated between a valid and an impossible row may look
-    /// valid.
+    /// ms. After these 100 ms, impossible rows become rows without contact. Impossible rows are
+    /// replaced before interpolation, because a value interpolated between a valid and an
+    /// impossible row may look valid.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();

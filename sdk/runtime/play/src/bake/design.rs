@@ -75,14 +75,14 @@ pub struct BakeResult {
     /// Largest error at the conditions, dB, of the nine frequency bands in which spectra are
     /// compared. Only bands within 40 dB of the strongest band count.
     pub at_conditions_db: f64,
-    /// Largest error of the nine bands midway between conditions, dB. It is not 0 because the model
-    /// interpolates parameters between conditions, whereas the player mixes filters or sinusoids.
+    /// Largest error of the nine bands midway between conditions, dB. Such errors occur because the
+    /// model interpolates parameters between conditions, whereas the player mixes filters or
+    /// sinusoids.
     pub between_db: f64,
     /// Largest error of the nine bands at half the lowest and twice the highest speed of the grid,
-    /// dB. It shows the effect of a limitation: the scaling law changes the frequencies of the
-    /// texture at these speeds, but the player cannot change the frequencies of a filter. `None` if
-    /// the law does not change frequencies, and for sinusoids, whose frequencies the player can
-    /// change.
+    /// dB. At these speeds, the scaling law changes the frequencies of the texture, but the player
+    /// cannot change the frequencies of a filter. `None` if the law does not change frequencies,
+    /// and for sinusoids, whose frequencies the player can change.
     pub beyond_db: Option<f64>,
     /// Lowest and highest recorded speed, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,

@@ -132,7 +132,7 @@ pub fn rust_name(stem: &str) -> String {
 }
 
 /// Returns whether an array in C and C++ may have this name. A valid name is a letter, followed by
-/// letters, digits and single underscores. It must not be a reserved word, such as a keyword.
+/// letters, digits and single underscores. A reserved word, such as a keyword, is not a valid name.
 ///
 /// ```
 /// assert!(htex_play::bake::is_c_name("felt2"));
@@ -165,9 +165,9 @@ pub fn is_rust_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
 }
 
-/// Returns a C header that defines a block as an array of bytes with this name. It also defines the
-/// macro `NAME_NUMBERS`, with `NAME` in capitals: the number of values that a player of this block
-/// needs. Comments state the author and the licence.
+/// Returns a C header that defines a block as an array of bytes with this name. The header also
+/// defines a macro with the number of values that a player of this block needs. For an array
+/// `felt`, the macro is `FELT_NUMBERS`. Comments state the author and the licence.
 pub fn c_header(name: &str, baked: &BakeResult) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();

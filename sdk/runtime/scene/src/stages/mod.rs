@@ -5,8 +5,8 @@
 //! the model's rate, before resampling. Frequency scaling is the only stage whose ratio of input
 //! samples to output samples changes.
 //!
-//! A scene may switch on an effect that is not needed. Such an effect changes the samples by at
-//! most 1e-6 of full scale, and most such effects change no bit
+//! A scene may switch on an effect that is not needed. An effect that is not needed changes no bit
+//! of the samples, or changes them by at most 1e-6 of full scale
 //! (`sdk/runtime/scene/tests/it/equivalence.rs`). Therefore, leaving out an effect that is not
 //! needed only saves time.
 

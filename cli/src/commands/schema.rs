@@ -6,7 +6,8 @@ use crate::output::print;
 
 /// Print JSON Schemas and model descriptors
 ///
-/// Prints one JSON Schema, e.g. the schema of scenes, or the descriptors of all built-in models.
+/// Prints either one JSON Schema (e.g. the schema of scenes) or the descriptors of all built-in
+/// models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print

@@ -41,8 +41,8 @@ pub(super) struct AskingArgs {
     #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
     touch_mm_per_px: f64,
 
-    /// Normal force to assume for a finger on the page, N, for --motion page, because a page cannot
-    /// measure the force
+    /// With --motion page: normal force of the finger, N. The page cannot measure the force, so htex
+    /// assumes this value
     #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
     touch_force: f64,
 }

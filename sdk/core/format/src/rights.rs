@@ -191,8 +191,8 @@ impl Rights {
     }
 }
 
-/// Returns the path of the licence file of a file that cannot contain its rights: `path` followed
-/// by `.license`.
+/// Returns the path of the licence file that belongs to the file at `path`: `path` followed by
+/// `.license`. A file that has no place for a licence needs such a licence file.
 #[must_use]
 pub fn license_file(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();

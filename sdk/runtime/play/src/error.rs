@@ -177,10 +177,11 @@ pub enum Error {
         /// The highest frequency of the texture.
         top_hz: f64,
     },
-    /// The model follows the position of the finger itself, which a baked block cannot do.
+    /// The model computes its samples from the position of the finger (`htex.motion/1`). A baked
+    /// block cannot do this.
     #[cfg(feature = "bake")]
     #[error(
-        "the model {model} follows the position of the finger itself; bake another representation"
+        "the model {model} plays from the position of the finger, which a baked block cannot do; bake another representation"
     )]
     FollowsMotion { model: String },
     /// A baked block has too many sinusoids.

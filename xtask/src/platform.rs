@@ -208,7 +208,7 @@ impl Build {
     pub(crate) fn cargo_of_both(&self) -> Command {
         let mut command = self.cargo("build");
         command.arg("--locked").args(self.profile());
-        if self.profile_name() != TESTS {
+        if !self.is_of_tests() {
             command.args(["--package", "htex-cli", "--package", "htex-capi"]);
         }
         command
@@ -219,6 +219,11 @@ impl Build {
     /// were compiled for the tests.
     pub(crate) fn profile(&self) -> [String; 2] {
         ["--profile".to_owned(), self.profile_name()]
+    }
+
+    /// Whether the build has the profile of the tests.
+    pub(crate) fn is_of_tests(&self) -> bool {
+        self.profile_name() == TESTS
     }
 
     fn profile_name(&self) -> String {

@@ -108,6 +108,10 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-lab",
             "htex",
             "htex-cli",
+            // Only for the features that they have in tests.
+            "htex-recording",
+            "htex-play",
+            "htex-object-server",
         ],
     ),
     (
@@ -190,12 +194,12 @@ fn dependencies_follow_the_arrows() {
     }
 }
 
-/// The packages that building these compiles, with their versions and features.
-fn compiled(packages: &[&str]) -> BTreeSet<String> {
+/// The packages that a build with these arguments compiles, with their versions and features.
+fn compiled(arguments: &[&str]) -> BTreeSet<String> {
     let mut tree = std::process::Command::new(env!("CARGO"));
     tree.args(["tree", "--locked", "--edges", "normal,build"]);
     tree.args(["--prefix", "none", "--format", "{p} {f}"]);
-    tree.args(packages.iter().flat_map(|name| ["--package", name]));
+    tree.args(arguments);
     let printed = tree.current_dir(workspace()).output().unwrap();
     assert!(printed.status.success(), "{printed:?}");
     let printed = String::from_utf8(printed.stdout).unwrap();
@@ -220,12 +224,23 @@ fn only_one_crate_parses_toml() {
 /// installed.
 #[test]
 fn what_the_command_compiles_is_not_compiled_again() {
-    let command = compiled(&["htex-cli"]);
+    let command = compiled(&["--package=htex-cli"]);
     // As `cargo xtask dist`, the wheel and `cargo xtask bench` build them.
-    for others in [&["htex-capi", "htex-cli"][..], &["htex-python"], &["htex-bench", "htex-cli"]] {
+    for others in [
+        &["--package=htex-capi", "--package=htex-cli"][..],
+        &["--package=htex-python"],
+        &["--package=htex-bench", "--package=htex-cli"],
+    ] {
         let again: Vec<_> = command.difference(&compiled(others)).cloned().collect();
         assert_eq!(again, [""; 0], "{others:?} have other features");
     }
+    // The wheel that `cargo xtask bindings python` tests.
+    let wheel = compiled(&["--package=htex-python", "--features=like-tests"]);
+    let tests = compiled(&[]);
+    let python = ["htex-python", "numpy", "pyo3"];
+    let is_other = |line: &&String| !python.iter().any(|name| line.starts_with(name));
+    let again: Vec<_> = wheel.difference(&tests).filter(is_other).collect();
+    assert_eq!(again, [""; 0], "the feature `like-tests` of htex-python leaves these out");
 }
 
 /// The README's first command uses no default features, but Cargo unites the features of all

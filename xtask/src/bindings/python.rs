@@ -35,9 +35,14 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     };
     // Reuses the crates that were already built for the command and libhtex.
     let built = std::path::absolute(target())?;
+    let build = Build::here()?;
+    let mut maturin = build.profile().join(" ");
+    if build.is_of_tests() {
+        maturin.push_str(" --features pyo3/extension-module,like-tests");
+    }
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)
-        .env("MATURIN_PEP517_ARGS", Build::here()?.profile().join(" "))
+        .env("MATURIN_PEP517_ARGS", maturin)
         .env("CARGO_TARGET_DIR", built))?;
     let wheels = files(&folder.join("wheel"))?;
     let wheel = wheels.first().context("pip wheel wrote no wheel")?;

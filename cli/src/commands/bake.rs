@@ -52,9 +52,8 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Insert conditions into the grid until the nine-band error midway between neighbouring
-    /// conditions is at most this value, dB. htex stops before the block has more than 64
-    /// conditions
+    /// Largest nine-band error midway between two neighbouring conditions of the block, dB. htex
+    /// adds conditions until this error is reached, or until the block has 64 conditions
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 

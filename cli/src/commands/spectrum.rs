@@ -44,8 +44,8 @@ pub(crate) struct Spectrum {
 /// Options that select the model, the speed and the force at which to play an asset.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// Model of the asset to use, by short name or id [default: the model with the smallest
-    /// nine-band error]
+    /// Which of the asset's models to play, by short name or id [default: the model with the
+    /// smallest nine-band error]
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,
 

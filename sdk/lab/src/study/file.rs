@@ -142,9 +142,9 @@ pub enum Order {
     /// are in random order. In this order, the experimenter exchanges the real texture as rarely as
     /// possible.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square. A condition of the square is a texture in a
-    /// model. Over as many rows as there are conditions, each condition occurs once at each
-    /// position.
+    /// Each repetition is a row of a Latin square. The conditions of the square are the pairs of a
+    /// texture and a model. Over as many rows as there are conditions, each condition occurs once at
+    /// each position.
     LatinSquare,
     /// Each repetition is a row of a Williams square (Williams 1949). A Williams square is a Latin
     /// square in which, over all rows, each condition also follows every other condition equally

@@ -50,15 +50,15 @@ class Metadata(TypedDict, total=False):
 class ResponseSettings(TypedDict, total=False):
     """How a response is measured."""
 
-    estimator: Annotated[Literal["h1", "h2", "hv"] | None, "Estimator of the response: h1 if the output has noise, h2 if the input has noise, hv if both have noise (total least squares) [default: h1]"]
+    estimator: Annotated[Literal["h1", "h2", "hv"] | None, "Estimator of the response. Use h1 if the output has noise, h2 if the input has noise, and hv (total least squares) if both have noise [default: h1]"]
     window_s: Annotated[float | None, "Length of a window, s. htex transforms the recording in windows of this length, so that the response has a value every 1/length Hz. If the length is a multiple of 0.2 s, these frequencies include the frequencies of texture spectra, which are 5 Hz apart [default: 1]"]
     low_hz: Annotated[float | None, "Lowest frequency of the response, Hz [default: 20]"]
     high_hz: Annotated[float | None, "Highest frequency of the response, Hz. If half of the sample rate is lower, the response ends at half of the sample rate [default: 1000]"]
-    input_limit: Annotated[float | None, "Count the input as overloaded where its magnitude reaches this value. By default, four equal samples in a row at the highest or lowest value count as an overload"]
-    output_limit: Annotated[float | None, "Count the output as overloaded where its magnitude reaches this value. By default, the same rule applies as for the input"]
+    input_limit: Annotated[float | None, "Count the input as overloaded where its magnitude reaches this value. By default, a hit is overloaded if it has four equal samples in a row at the input's highest or lowest value, and the input of a continuous drive is not checked"]
+    output_limit: Annotated[float | None, "Count the output as overloaded where its magnitude reaches this value. By default, four equal samples in a row at the output's highest or lowest value count as an overload"]
     continuous: Annotated[bool | None, "Measure with a continuous drive, such as noise or a sweep, instead of the hits of a hammer. htex then uses Hann windows, each of which overlaps the previous one by half"]
-    pre_trigger_s: Annotated[float | None, "For hits: begin each window this time before the trigger, s. htex subtracts the mean of this part from the window [default: 0.02]"]
+    pre_trigger_s: Annotated[float | None, "For hits: time by which each window begins before the trigger, s. htex subtracts the mean of the samples before the trigger from the window [default: 0.02]"]
     trigger: Annotated[float | None, "For hits: level at which a hit starts, as a fraction of the largest input of the recording [default: 0.1]"]
-    double: Annotated[float | None, "For hits: discard a hit as a double hit if its window has a second contact of at least this size, as a fraction of the hit [default: 0.1]"]
-    force_window_s: Annotated[float | None, "For hits: fade the input to zero from this time after the trigger on, s. This removes the noise between hits"]
-    exponential_s: Annotated[float | None, "For hits: multiply both channels by an exponential window with this time constant, s, if responses last longer than the window. This raises the measured damping by the inverse of the time constant"]
+    double: Annotated[float | None, "For hits: smallest size of a second contact, as a fraction of the hit. htex discards a hit if its window has such a second contact (double hit) [default: 0.1]"]
+    force_window_s: Annotated[float | None, "For hits: time after the trigger at which htex begins to fade the input to zero, s. The fade removes the noise between hits"]
+    exponential_s: Annotated[float | None, "For hits: time constant of an exponential window, s. htex multiplies both channels by this window. Use it if responses last longer than the window; the measured damping rises by the inverse of the time constant"]

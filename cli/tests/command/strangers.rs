@@ -275,8 +275,7 @@ fn a_recipe_names_no_inner_address() {
     let place = place();
     let (url, requests) = server(|_| ok("x"));
     let port = url.rsplit(':').next().unwrap();
-    for host in [
-        "127.0.0.1",
+    let hosts = [
         "localhost",
         "[::1]",
         "[::ffff:127.0.0.1]",
@@ -284,25 +283,24 @@ fn a_recipe_names_no_inner_address() {
         "2130706433",
         "[64:ff9b::7f00:1]",
         "100.64.0.1",
-    ] {
-        for key in ["recordings", "table", "tracker", "response", "plugins", "embed_plugins"] {
-            let uri = format!("http://{host}:{port}/a.csv");
-            let recipe = match key {
-                "recordings" => RECIPE.replace("rec/*.csv", &uri),
-                "table" => {
-                    RECIPE.replace("recordings = \"rec/*.csv\"", &format!("table = \"{uri}\""))
-                }
-                "plugins" => {
-                    RECIPE.replace("\"surfaces\"", &format!("\"surfaces\"\nplugins = [\"{uri}\"]"))
-                }
-                "embed_plugins" => format!("{RECIPE}{key} = [\"{uri}\"]\n"),
-                key => format!("{RECIPE}{key} = \"{uri}\"\n"),
-            };
-            place.write("library.toml", recipe);
-            let run = build(&place, &[]);
-            assert_eq!(run.code(), 1, "{key} {uri}");
-            assert!(run.error().contains("machine or network"), "{key} {uri}: {}", run.error());
-        }
+    ];
+    let keys = ["recordings", "table", "tracker", "response", "plugins", "embed_plugins"];
+    let addresses = hosts.map(|host| ("recordings", host));
+    for (key, host) in keys.map(|key| (key, "127.0.0.1")).into_iter().chain(addresses) {
+        let uri = format!("http://{host}:{port}/a.csv");
+        let recipe = match key {
+            "recordings" => RECIPE.replace("rec/*.csv", &uri),
+            "table" => RECIPE.replace("recordings = \"rec/*.csv\"", &format!("table = \"{uri}\"")),
+            "plugins" => {
+                RECIPE.replace("\"surfaces\"", &format!("\"surfaces\"\nplugins = [\"{uri}\"]"))
+            }
+            "embed_plugins" => format!("{RECIPE}{key} = [\"{uri}\"]\n"),
+            key => format!("{RECIPE}{key} = \"{uri}\"\n"),
+        };
+        place.write("library.toml", recipe);
+        let run = build(&place, &[]);
+        assert_eq!(run.code(), 1, "{key} {uri}");
+        assert!(run.error().contains("machine or network"), "{key} {uri}: {}", run.error());
     }
     assert_eq!(requests.load(Ordering::SeqCst), 0);
     let own = RECIPE.replace("rec/*.csv", "rec/a.csv");

@@ -192,8 +192,8 @@ fn a_build_follows_no_link_in_the_folder_of_its_results() {
         let link = place.path("dist").join(&name);
         fs::create_dir_all(link.parent().unwrap()).unwrap();
         symlink(outside.join(to), &link).unwrap();
-        for more in [&["--dry-run"][..], &[], &["--prune"]] {
-            let run = build(&place, more);
+        for more in ["--dry-run", "--prune"] {
+            let run = build(&place, &[more]);
             assert!(
                 run.code() == 0 || run.error().contains("symbolic link"),
                 "{name}: {}",

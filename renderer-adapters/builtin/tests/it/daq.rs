@@ -186,7 +186,7 @@ fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
 /// The device refuses a rate too low for the carrier, and a buffer that would delay the zero.
 #[test]
 fn what_endangers_a_finger_is_refused() {
-    for rate_hz in [7_000.0, 3_500.0, 14_000.0, 17_499.0] {
+    for rate_hz in [7_000.0, 3_500.0, 1_000.0, 7_001.0, 14_000.0, 17_499.0] {
         let card = Card::new();
         let error = card.open_at(rate_hz, &[]).err().unwrap().to_string();
         assert!(error.contains("2.5 times its carrier of 7000 Hz"), "{error}");

@@ -328,7 +328,7 @@ fn mutated_files_are_errors() {
         (state >> 33) as usize % below
     };
     let (mut refused, mut played) = (0, 0);
-    for _ in 0..100_000 {
+    for _ in 0..2_000 {
         let mut bytes = original.clone();
         for _ in 0..1 + random(4) {
             let at = random(bytes.len());
@@ -361,7 +361,7 @@ fn mutated_files_are_errors() {
         assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
     }
     println!("{refused} refused, {played} played");
-    assert!(refused > 50_000);
+    assert!(refused > 1_000);
 }
 
 static MESSAGES: AtomicUsize = AtomicUsize::new(0);

@@ -29,7 +29,7 @@ def every(place: pathlib.Path) -> htex.Texture:
     return htex.open(place / "every.htex")
 
 
-@pytest.mark.parametrize("model", [model["id"] for model in htex.models()])
+@pytest.mark.parametrize("model", ["ar", "bands"])
 def test_samples_are_those_of_the_command(every: htex.Texture, place: pathlib.Path, model: str) -> None:
     expected = played(place, "--model", model, "--seed", "7", asset="every.htex")
     samples = every.voice(model=model, rate_hz=20_000, seed=7).render(N)

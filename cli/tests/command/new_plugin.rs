@@ -54,24 +54,27 @@ fn a_new_model_in_c() {
 
 #[test]
 fn a_new_model_in_rust() {
-    let folder = tempfile::tempdir().unwrap();
-    let dir = written("rust", &folder.path().join("rust"));
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (folder, target) = (kept.join("new-model"), kept.join("third-party-target"));
+    let target = target.to_str().unwrap();
+    let _ = std::fs::remove_dir_all(&folder);
+    let dir = written("rust", &folder);
     let build = |more: &[&str]| {
         let built = Command::new(env!("CARGO"))
             .args(["build", "--quiet", "--release"])
             .args(more)
             .current_dir(&dir)
-            .env("CARGO_TARGET_DIR", format!("{dir}/target"))
+            .env("CARGO_TARGET_DIR", target)
             .status();
         assert!(built.unwrap().success());
     };
     build(&[]);
-    passes(&format!("{dir}/target/release/libmy_model{}", std::env::consts::DLL_SUFFIX));
+    passes(&format!("{target}/release/libmy_model{}", std::env::consts::DLL_SUFFIX));
     if !xtask::needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed()) {
         return;
     }
     build(&["--target", "wasm32-unknown-unknown"]);
-    passes(&format!("{dir}/target/wasm32-unknown-unknown/release/my_model.wasm"));
+    passes(&format!("{target}/wasm32-unknown-unknown/release/my_model.wasm"));
 }
 
 #[test]

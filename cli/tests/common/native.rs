@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use htex_check::device::{Direction, checks_of};
+
 use super::Place;
 
 pub fn workspace() -> PathBuf {
@@ -63,6 +65,39 @@ pub fn checked(place: &Place, arguments: &[&str]) -> serde_json::Value {
     });
     assert_eq!(run.code() == 0, report["ok"].as_bool().unwrap(), "{report:#}");
     report
+}
+
+/// A fault of a library, the check that must fail, and its outcome.
+pub type Fault = (&'static str, &'static str, &'static str);
+
+/// Each fault is found by its own check, and each check of a direction finds one. `more` gives the
+/// arguments for a fault.
+pub fn each_fault_is_found(
+    (place, source, good): (&Place, &str, &Path),
+    (faults, direction): (&[Fault], Direction),
+    more: impl Fn(&Fault) -> Vec<&'static str> + Sync,
+) {
+    let sound = checked(place, &[&bad(place, source, good, "NONE")]);
+    assert_eq!(count(&sound, "passed"), checks_of(Some(direction)).count(), "{sound:#}");
+    let is_found = |fault: &Fault| {
+        let library = bad(place, source, good, fault.0);
+        let report = checked(place, &[&[&library[..]], &more(fault)[..]].concat());
+        let expected = [(fault.1.to_owned(), fault.2.to_owned())];
+        assert_eq!(complaints(&report), expected, "{}: {report:#}", fault.0);
+    };
+    // Most of the time is spent waiting for a source that keeps to the clock, or for a library that
+    // has stopped.
+    for faults in faults.chunks(8) {
+        std::thread::scope(|scope| {
+            for fault in faults {
+                scope.spawn(|| is_found(fault));
+            }
+        });
+    }
+    for check in checks_of(Some(direction)) {
+        let is_held = faults.iter().any(|(_, name, _)| *name == check.name);
+        assert!(is_held, "no fault breaks `{}`", check.name);
+    }
 }
 
 /// How many checks of a report had this outcome.

@@ -10,8 +10,8 @@ use htex_check::device::{CHECKS, Direction, checks_of};
 use htex_device::{Adapter, DeviceError, NativeAdapter, Settings, StreamFormat};
 use serde_json::Value;
 
-/// A fault of `tests/bad-devices/output.c`, the check that must fail, and its outcome.
-const FAULTS: &[(&str, &str, &str)] = &[
+/// The faults of `tests/bad-devices/output.c`.
+const FAULTS: &[native::Fault] = &[
     ("MARKER", "marker", "failed"),
     ("EXPORT_MISSING", "exports", "failed"),
     ("DESCRIPTOR_JSON", "descriptor", "failed"),
@@ -52,11 +52,6 @@ const FAULTS: &[(&str, &str, &str)] = &[
 /// The strip chart of `examples`.
 fn strip(place: &Place) -> PathBuf {
     native::example(place, "device-c-strip", "strip.c")
-}
-
-/// The faulty device with a fault, or without.
-fn bad(place: &Place, good: &Path, fault: &str) -> String {
-    native::bad(place, "bad-devices/output.c", good, fault)
 }
 
 /// The report on a device.
@@ -124,28 +119,11 @@ fn sound_devices_pass() {
 fn each_fault_is_found_by_its_own_check() {
     let place = Place::new();
     let good = strip(&place);
-    let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
-    assert_eq!(count(&sound, "passed"), all(), "{sound:#}");
-    for (fault, name, outcome) in FAULTS {
-        let timeout_s = if *outcome == "timed-out" { "3" } else { "60" };
-        let report = checked(&place, &[&bad(&place, &good, fault), "--timeout", timeout_s]);
-        let expected = [(name.to_string(), outcome.to_string())];
-        assert_eq!(complaints(&report), expected, "{fault}: {report:#}");
-    }
-    for check in checks_of(Some(Direction::Output)) {
-        let is_held = FAULTS.iter().any(|(_, name, _)| *name == check.name);
-        assert!(is_held, "no fault breaks `{}`", check.name);
-    }
-}
-
-#[test]
-fn what_a_check_needs_comes_before_it() {
-    for (i, check) in CHECKS.iter().enumerate() {
-        for need in check.needs {
-            let earlier = CHECKS[..i].iter().any(|other| other.name == *need);
-            assert!(earlier, "{} needs {need}", check.name);
-        }
-    }
+    native::each_fault_is_found(
+        (&place, "bad-devices/output.c", &good),
+        (FAULTS, Direction::Output),
+        |fault| vec!["--timeout", if fault.2 == "timed-out" { "3" } else { "60" }],
+    );
 }
 
 /// A third party's device works: an hour of force becomes a picture of an hour.

@@ -8,8 +8,8 @@ use crate::common::native::{self, complaints, count};
 use htex_check::device::{Direction, checks_of};
 use serde_json::Value;
 
-/// A fault of `tests/bad-devices/input.c`, the check that must fail, and its outcome.
-const FAULTS: &[(&str, &str, &str)] = &[
+/// The faults of `tests/bad-devices/input.c`.
+const FAULTS: &[native::Fault] = &[
     ("MARKER", "marker", "failed"),
     ("EXPORT_MISSING", "exports", "failed"),
     ("TARGET", "descriptor", "failed"),
@@ -78,38 +78,17 @@ fn sound_inputs_pass() {
 fn each_fault_is_found_by_its_own_check() {
     let place = Place::new();
     let good = ridges(&place);
-    let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
-    assert_eq!(count(&sound, "passed"), all(), "{sound:#}");
-    // Most of the time is spent waiting for a source that keeps to the clock, or for one that has
-    // stopped.
-    for faults in FAULTS.chunks(8) {
-        std::thread::scope(|scope| {
-            for fault in faults {
-                scope.spawn(|| is_found_by_its_own_check(&place, &good, fault));
-            }
-        });
-    }
-    for check in checks_of(Some(Direction::Input)) {
-        let is_held = FAULTS.iter().any(|(_, name, _)| *name == check.name);
-        assert!(is_held, "no fault breaks `{}`", check.name);
-    }
-}
-
-fn is_found_by_its_own_check(
-    place: &Place,
-    good: &Path,
-    (fault, name, outcome): &(&str, &str, &str),
-) {
-    let timeout_s = if *outcome == "timed-out" { "5" } else { "60" };
-    let more = match *fault {
-        "READ_LOOPS" | "LEAK" => ["--set", "pace=fast"],
-        _ => ["--set", "pace=real"],
-    };
-    let library = bad(place, good, fault);
-    let arguments = [&[&library[..], "--timeout", timeout_s], &more[..]].concat();
-    let report = checked(place, &arguments);
-    let expected = [(name.to_string(), outcome.to_string())];
-    assert_eq!(complaints(&report), expected, "{fault}: {report:#}");
+    native::each_fault_is_found(
+        (&place, "bad-devices/input.c", &good),
+        (FAULTS, Direction::Input),
+        |&(fault, _, outcome)| {
+            let pace = match fault {
+                "READ_LOOPS" | "LEAK" => "pace=fast",
+                _ => "pace=real",
+            };
+            vec!["--timeout", if outcome == "timed-out" { "5" } else { "60" }, "--set", pace]
+        },
+    );
 }
 
 /// A third party's source is recorded, every sample as the library made it, and the recording is

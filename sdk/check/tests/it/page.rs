@@ -1,6 +1,8 @@
 //! Tests `spec/model-checks.md`, the order of the table that it lists, and the templates' headers.
 
-use htex_check::model::{CHECKS, model_checks_page};
+use htex_check::harness::Check;
+use htex_check::model::model_checks_page;
+use htex_check::{device, model};
 
 #[test]
 fn generated_page_is_fresh() {
@@ -17,10 +19,14 @@ fn generated_headers_of_the_templates_are_those_of_the_specification() {
 
 #[test]
 fn checks_stand_behind_those_that_they_need() {
-    for (i, check) in CHECKS.iter().enumerate() {
-        for need in check.needs {
-            let earlier = CHECKS[..i].iter().any(|other| other.name == *need);
-            assert!(earlier, "{} needs {need}", check.name);
+    fn stand<Case>(checks: &[Check<Case>]) {
+        for (i, check) in checks.iter().enumerate() {
+            for need in check.needs {
+                let earlier = checks[..i].iter().any(|other| other.name == *need);
+                assert!(earlier, "{} needs {need}", check.name);
+            }
         }
     }
+    stand(model::CHECKS);
+    stand(device::CHECKS);
 }

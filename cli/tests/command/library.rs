@@ -160,35 +160,6 @@ fn differences_are_named_and_exit_with_1() {
     assert_eq!(place.run(&["lib", "diff", "all.htexlib", "all.htexlib"]).code(), 0);
 }
 
-/// `verify` and `validate` give the reports of the specification's conformance files.
-#[test]
-fn damage_is_reported_as_the_conformance_files_state() {
-    let place = Place::new();
-    let mut checked = 0;
-    for entry in std::fs::read_dir(CONFORMANCE).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "json") {
-            continue;
-        }
-        let golden: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-        if golden.get("limits").is_some() {
-            continue;
-        }
-        let name = golden["file"].as_str().unwrap();
-        place.write(name, std::fs::read(path.with_file_name(name)).unwrap());
-        for command in [&["lib", "verify"][..], &["validate"]] {
-            let run = place.run(&[command, &[name, "--json"]].concat());
-            let reports: Value = serde_json::from_str(&run.text()).unwrap();
-            assert_eq!(reports, json!([golden]), "{command:?}");
-            assert_eq!(run.code() == 0, golden["valid"] == json!(true), "{name}");
-        }
-        checked += 1;
-    }
-    assert!(checked > 50, "{checked}");
-    let code = "LIBRARY_RANGE_INVALID";
-    assert!(place.run(&["explain", code]).text().contains(code));
-}
-
 #[test]
 fn a_library_is_recognised_by_its_first_bytes() {
     let place = packed();
@@ -256,18 +227,19 @@ fn textures_without_a_licence_are_not_packed() {
 #[test]
 fn what_is_valid_unpacks() {
     let place = Place::new();
+    let mut names = entries(Path::new(CONFORMANCE));
+    names.retain(|name| name.ends_with(".htexlib"));
+    let libraries: Vec<String> = names.iter().map(|n| format!("{CONFORMANCE}/{n}")).collect();
+    let libraries: Vec<&str> = libraries.iter().map(String::as_str).collect();
+    let [validated, verified] = [&["validate", "--json"][..], &["lib", "verify", "--json"]]
+        .map(|command| place.run(&[command, &libraries].concat()).text());
+    assert_eq!(validated, verified);
+    let reports: Vec<Value> = serde_json::from_str(&validated).unwrap();
     let mut refused = 0;
-    for name in entries(Path::new(CONFORMANCE)) {
-        let Some(stem) = name.strip_suffix(".htexlib") else {
-            continue;
-        };
-        let library = format!("{CONFORMANCE}/{name}");
-        let unpacked = place.run(&["lib", "unpack", &library, "-o", &format!("out/{stem}")]);
-        let validated = place.run(&["validate", &library]);
-        let verified = place.run(&["lib", "verify", &library]);
-        assert_eq!(validated.code(), verified.code(), "{name}");
+    for ((name, library), report) in names.iter().zip(libraries).zip(&reports) {
+        let unpacked = place.run(&["lib", "unpack", library, "-o", &format!("out/{name}")]);
         if unpacked.code() != 0 {
-            assert_eq!(validated.code(), 1, "{name}: {}", unpacked.error());
+            assert_eq!(report["valid"], false, "{name}: {}", unpacked.error());
             refused += 1;
         }
     }

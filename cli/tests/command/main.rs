@@ -17,6 +17,7 @@ mod catalogue;
 #[cfg(unix)]
 mod checker;
 mod compat;
+mod conformance;
 mod embed;
 mod every_feature;
 mod exchange;

@@ -2,38 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::common::{Place, entries, numbers};
+use crate::common::{Place, numbers};
 use serde_json::Value;
-
-#[test]
-fn the_conformance_recordings_validate_as_their_reports_say() {
-    let place = Place::new();
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/recording-conformance");
-    let mut files = entries(folder.as_ref());
-    files.retain(|name| name.ends_with(".csv"));
-    assert!(files.len() > 15, "{}", files.len());
-    for name in files {
-        let path = format!("{folder}/{name}");
-        let golden = std::fs::read_to_string(path.replace(".csv", ".report.json")).unwrap();
-        let golden: Value = serde_json::from_str(&golden).unwrap();
-        let arguments = golden["arguments"].as_array().unwrap();
-        let arguments: Vec<&str> = arguments.iter().map(|a| a.as_str().unwrap()).collect();
-        let validate = [&["validate", &path, "--json"][..], &arguments].concat();
-        let run = place.run(&validate);
-        let got: Value = serde_json::from_str(&run.text()).unwrap();
-        assert_eq!(got[0]["valid"], golden["valid"], "{name}");
-        assert_eq!(got[0]["findings"], golden["findings"], "{name}");
-        assert_eq!(run.code(), i32::from(golden["valid"] != true), "{name}");
-        let findings = golden["findings"].as_array().unwrap();
-        let is_clean = findings.iter().all(|f| f["severity"] == "info");
-        let strict = place.run(&[&validate[..], &["--strict"]].concat());
-        assert_eq!(strict.code(), i32::from(!is_clean), "{name}");
-        for finding in findings {
-            let explained = place.run(&["explain", finding["code"].as_str().unwrap()]);
-            assert!(explained.text().contains("What to do"), "{finding}");
-        }
-    }
-}
 
 #[test]
 fn fit_warns_of_what_strict_refuses() {

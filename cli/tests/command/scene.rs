@@ -10,7 +10,6 @@ use crate::common::{Place, entries};
 use serde_json::{Value, json};
 
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
-const CONFORMANCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/scene-conformance");
 
 /// A place with the assets of the examples.
 fn place() -> Place {
@@ -146,31 +145,8 @@ fn what_is_wrong_is_told_with_code_and_pointer_and_nothing_is_written() {
 }
 
 #[test]
-fn the_conformance_scenes_validate_as_their_reports_say() {
-    let place = Place::new();
-    let mut files = entries(CONFORMANCE.as_ref());
-    files.retain(|name| name.ends_with(".scene.json"));
-    assert!(files.len() > 40, "{}", files.len());
-    // The list of devices in a message is this program's.
-    let brief = |findings: &Value| -> Vec<Value> {
-        let all = findings.as_array().unwrap().iter();
-        all.map(|f| json!([f["code"], f["severity"], f["pointer"]])).collect()
-    };
-    for name in files {
-        let path = format!("{CONFORMANCE}/{name}");
-        let golden = std::fs::read_to_string(path.replace(".scene.", ".report.")).unwrap();
-        let golden: Value = serde_json::from_str(&golden).unwrap();
-        let run = place.run(&["validate", &path, "--json"]);
-        let got: Value = serde_json::from_str(&run.text()).unwrap();
-        assert_eq!(got[0]["valid"], golden["valid"], "{name}");
-        assert_eq!(brief(&got[0]["findings"]), brief(&golden["findings"]), "{name}");
-        assert_eq!(run.code(), i32::from(golden["valid"] != true), "{name}");
-        for finding in golden["findings"].as_array().unwrap() {
-            let explained = place.run(&["explain", finding["code"].as_str().unwrap()]);
-            assert!(explained.text().contains("What to do"), "{finding}");
-        }
-    }
-    assert_eq!(place.json(&["schema", "scene"])["title"], "Scene of htex 1");
+fn the_schema_of_scenes_is_printed() {
+    assert_eq!(Place::new().json(&["schema", "scene"])["title"], "Scene of htex 1");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use serde_json::{Value, json};
 
-use crate::common::{Files, Place};
+use crate::common::{Files, Place, words};
 
 /// Half a second of a hum that grows.
 fn haptic() -> String {
@@ -19,10 +19,6 @@ fn haptic() -> String {
 const HATT: &str = include_str!("../../../sdk/make/exchange/tests/felt.xml");
 
 const GIVEN: &str = "--full-scale 0.2 --speed 80 --force 0.4";
-
-fn words(line: &str) -> Vec<&str> {
-    line.split_whitespace().collect()
-}
 
 /// Runs a line, and expects a status.
 fn run(place: &Place, line: &str, code: i32) -> (String, String) {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::common::{Place, computed, entries, numbers, stated};
+use crate::common::{Place, computed, entries, numbers, stated, words};
 use htex_format::{By, Measure};
 use htex_host::Registry;
 
@@ -159,19 +159,10 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
         );
     }
     place.write("steep.csv", steep);
-    let fitted = place.json(&[
-        "fit",
-        "steep.csv",
-        "--at",
-        "speed=80,force=0.4",
-        "--model",
-        "sbeta",
-        "--option",
-        "sbeta.error=magnitude",
-        "-o",
-        "steep.htex",
-        "--json",
-    ]);
+    let fitted = place.json(&words(
+        "fit steep.csv --at speed=80,force=0.4 --model sbeta --option \
+             sbeta.error=magnitude -o steep.htex --json",
+    ));
     let quality = &stated(&fitted, 0)["quality"];
     println!("{quality}");
     let rms_db = quality["band_error_rms_db"].as_f64().unwrap();
@@ -222,19 +213,9 @@ fn several_conditions_of_one_texture() {
     let mut names = Vec::new();
     for (speed, force) in [("60", "0.3"), ("120", "0.3"), ("60", "0.7"), ("120", "0.7")] {
         let name = format!("{speed}-{force}.csv");
-        let run = place.run(&[
-            "simulate",
-            "--surface",
-            "sandpaper",
-            "--seconds",
-            "4",
-            "--speed",
-            speed,
-            "--force",
-            force,
-            "-o",
-            &name,
-        ]);
+        let run = place.run(&words(&format!(
+            "simulate --surface sandpaper --seconds 4 --speed {speed} --force {force} -o {name}"
+        )));
         assert_eq!(run.code(), 0, "{}", run.error());
         names.push(name);
     }

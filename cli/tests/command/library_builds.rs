@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, SystemTime};
 
-use crate::common::Place;
+use crate::common::{Place, words};
 use htex_format::library::{Entry, Library};
 use serde_json::Value;
 
@@ -110,22 +110,10 @@ fn what_changed_is_built_and_nothing_else() {
     ] {
         assert!(built.contains_key(file), "{file}: {:?}", built.keys());
     }
-    let fitted_alone = place.run(&[
-        "fit",
-        "rec/vinyl_1.csv",
-        "--model",
-        "bands,sbeta",
-        "--speed",
-        "80",
-        "--force",
-        "0.4",
-        "-o",
-        "1.htex",
-        "--license",
-        "CC0-1.0",
-        "--tag",
-        "vinyl",
-    ]);
+    let fitted_alone = place.run(&words(
+        "fit rec/vinyl_1.csv --model bands,sbeta --speed 80 --force 0.4 -o 1.htex \
+             --license CC0-1.0 --tag vinyl",
+    ));
     assert_eq!(fitted_alone.code(), 0, "{}", fitted_alone.error());
     let alone = place.json(&["info", "1.htex", "--json"]);
     let ours = place.json(&["info", "dist/textures/vinyl/1.htex", "--json"]);

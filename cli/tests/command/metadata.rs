@@ -9,23 +9,15 @@ use crate::common::Place;
 use serde_json::Value;
 use zip::write::SimpleFileOptions;
 
-const METADATA: [&str; 16] = [
-    "--name",
-    "Coarse cloth",
-    "--author",
-    "A. Uthor",
-    "--license",
-    "CC-BY-4.0",
-    "--description",
-    "plain weave, 12 threads per cm",
-    "--tag",
-    "cloth,coarse",
-    "--source",
-    "Example University",
-    "--doi",
-    "10.5281/zenodo.1234567",
-    "--sensor",
-    "six-axis force sensor",
+const METADATA: [[&str; 2]; 8] = [
+    ["--name", "Coarse cloth"],
+    ["--author", "A. Uthor"],
+    ["--license", "CC-BY-4.0"],
+    ["--description", "plain weave, 12 threads per cm"],
+    ["--tag", "cloth,coarse"],
+    ["--source", "Example University"],
+    ["--doi", "10.5281/zenodo.1234567"],
+    ["--sensor", "six-axis force sensor"],
 ];
 
 /// The entries of an asset, unpacked by the package `zip`, which also writes the same bytes.
@@ -74,7 +66,7 @@ fn an_edit_changes_the_metadata_alone() {
         let file = format!("{name}.htex");
         let original = std::fs::read(format!("{spec}/{file}")).unwrap();
         place.write(&file, &original);
-        let edit = [&["edit", &file, "-o", "e.htex"], &METADATA[..]].concat();
+        let edit = [&["edit", &file, "-o", "e.htex"], METADATA.as_flattened()].concat();
         let run = place.run(&edit);
         assert_eq!(run.code(), 0, "{name}: {}", run.error());
         assert_eq!(std::fs::read(place.path(&file)).unwrap(), original);
@@ -83,7 +75,7 @@ fn an_edit_changes_the_metadata_alone() {
         let (mut was, mut is) = (manifest(&before), manifest(&after));
         assert_eq!(is["doi"], "10.5281/zenodo.1234567");
         assert_eq!(is["tags"], serde_json::json!(["cloth", "coarse"]));
-        for key in METADATA.iter().step_by(2).map(|flag| &flag[2..]) {
+        for key in METADATA.map(|[flag, _]| &flag[2..]) {
             let key = if key == "tag" { "tags" } else { key };
             for manifest in [&mut was, &mut is] {
                 manifest.as_object_mut().unwrap().remove(key);
@@ -123,12 +115,12 @@ fn metadata_is_fitted_shown_removed_and_checked() {
     let csv = place.recording("vinyl");
     let fit = ["fit", &csv, "--model", "sbeta", "-o", "v.htex", "--json"];
     let finger = ["--finger", "bare index finger"];
-    place.json(&[&fit[..], &METADATA, &finger].concat());
+    place.json(&[&fit[..], METADATA.as_flattened(), &finger].concat());
     let info = &place.json(&["info", "v.htex", "--json"])["manifest"];
     assert_eq!(info["finger"], "bare index finger");
     assert_eq!((&info["name"], &info["htex"]), (&"Coarse cloth".into(), &"1.0".into()));
     let text = place.run(&["info", "v.htex"]).text();
-    for line in METADATA.chunks(2).chain([&finger[..]]).map(|pair| pair[1]) {
+    for line in METADATA.into_iter().chain([finger]).map(|[_, text]| text) {
         assert!(text.contains(&line.replace(',', ", ")) || text.contains(line), "{line}: {text}");
     }
     // In place; an empty text removes an entry.

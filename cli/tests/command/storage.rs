@@ -3,7 +3,7 @@
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use crate::common::{Place, entries};
+use crate::common::{Place, entries, words};
 use htex_object_server::{ACCESS_KEY, Fault, SECRET_KEY, Server};
 use serde_json::json;
 
@@ -97,16 +97,10 @@ fn files_elsewhere_are_those_here() {
         1 => Fault::Cut(500_000),
         _ => Fault::None,
     });
-    let there = bench.run(&[
-        "fit",
-        "s3://surfaces/vinyl.csv",
-        "--model",
-        "bands,ar",
-        "-o",
-        "s3://surfaces/new/vinyl.htex",
-        "--report",
-        "s3://surfaces/new/vinyl.html",
-    ]);
+    let there = bench.run(&words(
+        "fit s3://surfaces/vinyl.csv --model bands,ar -o s3://surfaces/new/vinyl.htex \
+             --report s3://surfaces/new/vinyl.html",
+    ));
     assert_eq!(there.code(), 0, "{}", there.error());
     let methods: Vec<String> = server.requests().into_iter().map(|r| r.method).collect();
     assert_eq!(methods, ["GET", "GET", "GET", "PUT", "PUT", "PUT"]);
@@ -212,14 +206,8 @@ fn a_result_that_cannot_be_written_is_kept() {
     bench.server.fail(|_, request| {
         if request.method == "PUT" { Fault::Status(403, "AccessDenied") } else { Fault::None }
     });
-    let done = bench.run(&[
-        "fit",
-        "s3://surfaces/vinyl.csv",
-        "--model",
-        "bands",
-        "-o",
-        "s3://surfaces/new.htex",
-    ]);
+    let done =
+        bench.run(&words("fit s3://surfaces/vinyl.csv --model bands -o s3://surfaces/new.htex"));
     done.failed(
         1,
         &["s3://surfaces/new.htex: the server refuses access", "the result is kept in "],
@@ -283,16 +271,9 @@ fn a_scene_and_an_asset_name_no_uri() {
         }
     }
     assert!(bench.server.requests().is_empty());
-    let arguments = [
-        "edit",
-        "s3://surfaces/cloth.htex",
-        "--source",
-        &web,
-        "--description",
-        &web,
-        "-o",
-        "cloth.htex",
-    ];
+    let line =
+        format!("edit s3://surfaces/cloth.htex --source {web} --description {web} -o cloth.htex");
+    let arguments = words(&line);
     assert_eq!(bench.run(&arguments).code(), 0);
     bench.server.fail(|_, _| Fault::None);
     assert_eq!(bench.run(&["synth", "cloth.htex", "--seconds", "1", "-o", "cloth.wav"]).code(), 0);

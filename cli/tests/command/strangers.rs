@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::common::{Place, Run};
+use crate::common::{Place, Run, words};
 use serde_json::Value;
 
 const RECIPE: &str = r#"
@@ -428,17 +428,7 @@ fn many_textures_take_little_memory() {
 fn a_line_without_an_end_is_an_error() {
     let place = place();
     place.write("signal.csv", fs::read(place.path("rec/a.csv")).unwrap());
-    let record = [
-        "record",
-        "--source",
-        "file:signal.csv",
-        "--tracker",
-        "lines:-",
-        "--seconds",
-        "1",
-        "-o",
-        "takes",
-    ];
+    let record = words("record --source file:signal.csv --tracker lines:- --seconds 1 -o takes");
     let mut child = place
         .command(&record)
         .stdin(Stdio::piped())
@@ -493,18 +483,8 @@ fn a_line_break_in_a_variable_is_an_error() {
 fn recordings_of_participants_are_the_users_alone() {
     let place = place();
     place.write("signal.csv", fs::read(place.path("rec/a.csv")).unwrap());
-    let record = [
-        "record",
-        "--source",
-        "file:signal.csv",
-        "--fast",
-        "--seconds",
-        "1",
-        "--min-on-target",
-        "0",
-        "-o",
-        "takes",
-    ];
+    let record =
+        words("record --source file:signal.csv --fast --seconds 1 --min-on-target 0 -o takes");
     let run = place.run(&record);
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     let folder = place.path("takes");

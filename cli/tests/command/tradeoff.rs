@@ -3,7 +3,7 @@
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::common::{Place, entries};
+use crate::common::{Place, entries, words};
 use crate::model::ID;
 use crate::versions::{FIELDS, noise};
 use htex_host::{Registry, Search};
@@ -207,21 +207,11 @@ fn wrong_usage_writes_nothing() {
     let place = Place::new();
     let csv = place.recording("vinyl");
     place.write("text.csv", "this is\nno recording\n");
-    let short = [
-        "tradeoff",
-        &csv,
-        "--from",
-        "1",
-        "--to",
-        "1.7",
-        "--segments",
-        "windows",
-        "--only",
-        "sslope",
-        "--quick",
-        "-o",
-        "short.html",
-    ];
+    let short = format!(
+        "tradeoff {csv} --from 1 --to 1.7 --segments windows --only sslope --quick -o \
+             short.html"
+    );
+    let short = words(&short);
     let held_out = [&short[..], &["--error", "held-out"]].concat();
     let cases: [(&[&str], i32, &str); 6] = [
         (&held_out, 1, "fewer than four blocks"),

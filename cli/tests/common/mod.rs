@@ -120,6 +120,11 @@ impl Run {
     }
 }
 
+/// The words of a line, e.g. of a command.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 /// What the manifest in a summary states of a representation at its first condition.
 pub fn stated(summary: &Value, index: usize) -> &Value {
     &summary["manifest"]["representations"][index]["at"][0]

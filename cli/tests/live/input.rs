@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::common::Place;
 use crate::common::native::{self, complaints, count};
+use crate::common::{Place, words};
 use htex_check::device::{Direction, checks_of};
 use serde_json::Value;
 
@@ -99,28 +99,11 @@ fn the_ridges_are_recorded_and_fitted() {
     let place = Place::new();
     let library = ridges(&place);
     let record = |more: &[&str]| {
-        let base = [
-            "record",
-            "--source",
-            "ridges:0.8",
-            "--set",
-            "pace=fast",
-            "--take",
-            "ridges",
-            "--seconds",
-            "4",
-            "--min-sweeps",
-            "0",
-            "--countdown",
-            "0",
-            "--target-speed",
-            "80",
-            "--target-force",
-            "0.4",
-            "-o",
-            "takes",
-        ];
-        place.command(&[&base, more].concat())
+        let base = words(
+            "record --source ridges:0.8 --set pace=fast --take ridges --seconds 4 \
+             --min-sweeps 0 --countdown 0 --target-speed 80 --target-force 0.4 -o takes",
+        );
+        place.command(&[&base[..], more].concat())
     };
     let named = record(&["--device-file", library.to_str().unwrap(), "--json"]);
     let output = { named }.output().unwrap();
@@ -179,24 +162,13 @@ fn what_is_no_input_is_refused_with_its_reason() {
         (&many, "ridges:1", 1, "it delivered"),
         (&rate, "ridges:1", 1, "stream: "),
     ];
-    for (library, source, code, words) in cases {
-        let run = place.run(&[
-            "record",
-            "--device-file",
-            library,
-            "--source",
-            source,
-            "--seconds",
-            "1",
-            "--countdown",
-            "0",
-            "--set",
-            "pace=fast",
-            "-o",
-            "takes",
-        ]);
+    for (library, source, code, said) in cases {
+        let run = place.run(&words(&format!(
+            "record --device-file {library} --source {source} --seconds 1 --countdown 0 \
+             --set pace=fast -o takes"
+        )));
         let error = run.error();
-        assert!(run.code() == code && error.contains(words), "{words}: {error}");
+        assert!(run.code() == code && error.contains(said), "{said}: {error}");
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{Place, entries};
+use crate::common::{Place, entries, words};
 use serde_json::Value;
 
 /// Volts for a newton of the sensor, and for a millimetre of the tracker that is wired to the card.
@@ -16,20 +16,9 @@ const MAP: &str = "lateral_x=ai0:1,lateral_y=ai1:1,normal=ai2*0.5,y=ai3*100";
 /// as 0.4 N.
 fn volts(place: &Place, force: f64) -> Vec<String> {
     let newtons = (0.4 * force).to_string();
-    let simulate = [
-        "simulate",
-        "--surface",
-        "vinyl",
-        "--seconds",
-        "4",
-        "--rate",
-        "2000",
-        "--force",
-        &newtons,
-        "-o",
-        "sim.csv",
-    ];
-    let run = place.run(&simulate);
+    let run = place.run(&words(&format!(
+        "simulate --surface vinyl --seconds 4 --rate 2000 --force {newtons} -o sim.csv"
+    )));
     assert_eq!(run.code(), 0, "{}", run.error());
     let csv = std::fs::read_to_string(place.path("sim.csv")).unwrap();
     let line = |line: &str| {
@@ -47,30 +36,12 @@ fn volts(place: &Place, force: f64) -> Vec<String> {
 /// A recording from the card.
 fn command(place: &Place, more: &[&str]) -> Command {
     let driver = format!("driver={}", crate::simulated::built().display());
-    let base = [
-        "record",
-        "--source",
-        "daq:Dev1/ai0:3",
-        "--set",
-        &driver,
-        "--set",
-        "rate_hz=2000",
-        "--map",
-        MAP,
-        "--take",
-        "vinyl",
-        "--seconds",
-        "4",
-        "--countdown",
-        "0",
-        "--target-speed",
-        "80",
-        "--target-force",
-        "0.4",
-        "-o",
-        "takes",
-    ];
-    let mut command = place.command(&[&base, more].concat());
+    let base = words(
+        "record --source daq:Dev1/ai0:3 --set rate_hz=2000 --take vinyl --seconds 4 --countdown 0 \
+         --target-speed 80 --target-force 0.4 -o takes",
+    );
+    let card = ["--set", &driver, "--map", MAP];
+    let mut command = place.command(&[&base[..], &card, more].concat());
     command
         .env("NIDAQMX_SIM_CLOCK", "calls")
         .env("NIDAQMX_SIM_INPUT", place.path("volts.csv"))
@@ -275,20 +246,7 @@ fn what_cannot_be_recorded_is_said_before_anything_is() {
         (&["--source", &file, "--tolerance", "2"], 2, "the tolerance is 2"),
         (&["--source", &file, "--calibration", "bad.csv"], 1, "bad.csv: 1 rows of numbers, not 6"),
         (&["--source", &file, "--map", "lateral=nothing"], 1, "nothing"),
-        (
-            &[
-                "--source",
-                &file,
-                "--map",
-                "lateral=#1:1",
-                "--target-force",
-                "0.4",
-                "--quantity",
-                "weight",
-            ],
-            2,
-            "weight",
-        ),
+        (&["--source", &file, "--map", "lateral=#1:1", "--quantity", "weight"], 2, "weight"),
         (&["--source", &file, "--tracker", "mouse"], 2, "lines:-"),
     ];
     for (arguments, code, words) in cases {

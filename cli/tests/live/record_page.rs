@@ -6,7 +6,7 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::browser::{Browser, Tab, fits_tablets, pictured, status};
-use crate::common::{Place, entries};
+use crate::common::{Place, entries, words};
 use serde_json::Value;
 
 /// Rows of a second.
@@ -28,20 +28,9 @@ fn command(place: &Place, more: &[&str]) -> (Child, String) {
 
 /// Rows of eight seconds of a simulated finger at this force (N) and 80 mm/s.
 fn sweeps(place: &Place, force_n: &str) -> Vec<String> {
-    let simulate = [
-        "simulate",
-        "--surface",
-        "vinyl",
-        "--seconds",
-        "8",
-        "--rate",
-        "2000",
-        "--force",
-        force_n,
-        "-o",
-        "sim.csv",
-    ];
-    let run = place.run(&simulate);
+    let run = place.run(&words(&format!(
+        "simulate --surface vinyl --seconds 8 --rate 2000 --force {force_n} -o sim.csv"
+    )));
     assert_eq!(run.code(), 0, "{}", run.error());
     let csv = std::fs::read_to_string(place.path("sim.csv")).unwrap();
     let row = |line: &str| line.split_once(',').unwrap().1.to_owned();
@@ -84,18 +73,7 @@ fn becomes(browser: &mut Browser, tab: &Tab, expression: &str) {
     }
 }
 
-const TARGETS: [&str; 10] = [
-    "--seconds",
-    "8",
-    "--countdown",
-    "3",
-    "--target-speed",
-    "80",
-    "--target-force",
-    "0.4",
-    "--attempts",
-    "3",
-];
+const TARGETS: &str = "--seconds 8 --countdown 3 --target-speed 80 --target-force 0.4 --attempts 3";
 
 #[test]
 fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
@@ -105,7 +83,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     }
     let place = Place::new();
     session(&place);
-    let (child, url) = command(&place, &[&TARGETS[..], &["--tare"]].concat());
+    let (child, url) = command(&place, &words(&format!("{TARGETS} --tare")));
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "Lift the finger, then start");

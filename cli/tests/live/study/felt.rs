@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::process::Stdio;
 
-use crate::common::Place;
+use crate::common::{Place, words};
 use crate::studies::*;
 
 /// A study of one texture on the simulated card.
@@ -126,18 +126,8 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
     };
     place.write("felt.csv", rows(60));
     let run = |input: &str, source: &str| {
-        let arguments = [
-            "study",
-            "run",
-            "study.toml",
-            "--participant",
-            "Ann",
-            "--source",
-            source,
-            "--format",
-            "csv",
-        ];
-        let mut command = place.command(&arguments);
+        let line = format!("study run study.toml --participant Ann --source {source} --format csv");
+        let mut command = place.command(&words(&line));
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let _ = child.stdin.take().unwrap().write_all(input.as_bytes());

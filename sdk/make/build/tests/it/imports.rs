@@ -290,12 +290,6 @@ fn a_damaged_file_is_named_with_its_place() {
     place.write("felt.xml", &hatt("Felt").replace("<value>0.5</value>", "<value>half</value>"));
     let error = place.refused(MODEL_FILE);
     assert!(error.starts_with("felt: felt.xml: line "), "{error}");
-    place.write("hum.haptic", &HAPTIC.replace("0.6", "1.6"));
-    let error = place.refused(SIGNAL);
-    assert!(
-        error.starts_with("hum: hum.haptic: /signals/continuous/envelopes/amplitude/1"),
-        "{error}"
-    );
 }
 
 #[test]

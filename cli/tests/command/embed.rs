@@ -1,6 +1,7 @@
 //! An asset that embeds its model plays where that model was never installed.
 
 use crate::common::{Place, stated};
+use serde_json::json;
 
 /// Builds the third-party example in C to `bursts.wasm`; false without a compiler for it.
 fn build_bursts(place: &Place) -> bool {
@@ -54,9 +55,8 @@ fn a_third_party_model_travels_with_its_asset() {
     }
 
     // A scene plays it too, so it is valid where embedded models may run.
-    let scene = r#"{"htex_scene": "1.0", "surfaces": [{"asset": "b.htex", "representation": "bursts"}],
-        "motion": {"constant": {"speed_mm_s": 80, "force_n": 0.4}}, "duration_s": 1}"#;
-    place.write("scene.json", scene);
+    let surfaces = json!([{ "asset": "b.htex", "representation": "bursts" }]);
+    place.scene("scene.json", "", &json!({ "surfaces": surfaces, "duration_s": 1 }));
     let validate = ["validate", "scene.json"];
     let unplayed = place.run(&validate);
     assert_eq!(unplayed.code(), 1);

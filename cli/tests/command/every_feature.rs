@@ -71,13 +71,7 @@ fn files() -> Files {
     }
     place.write("silent.htex", silent.to_bytes().unwrap());
     for name in FILES {
-        let scene = json!({
-            "htex_scene": "1.0",
-            "surfaces": [{ "asset": name }],
-            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-            "duration_s": 0.2,
-        });
-        place.write(&format!("{name}.scene.json"), scene.to_string());
+        place.scene(&format!("{name}.scene.json"), name, &json!({ "duration_s": 0.2 }));
     }
     place.files()
 }

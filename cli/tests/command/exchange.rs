@@ -302,15 +302,11 @@ fn a_scene_goes_out_as_it_plays() {
     let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/scenes");
     let scene = |name: &str| scenes.join(name).display().to_string();
     let told = |line: String| place.json(&words(&format!("export {line} --json")));
-    let one = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": scene("coarse-fabric.htex"), "representation": "sslope" }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-        "duration_s": 5,
-    });
-    place.write("one.scene.json", one.to_string());
+    let asset = scene("coarse-fabric.htex");
+    let surfaces = json!([{ "asset": asset, "representation": "sslope" }]);
+    place.scene("one.scene.json", "", &json!({ "surfaces": surfaces, "duration_s": 5 }));
     let at = "--to wav --model sslope --speed 80 --force 0.4 --seconds 5";
-    let alone = told(format!("{} {at} -o alone.wav", scene("coarse-fabric.htex")));
+    let alone = told(format!("{asset} {at} -o alone.wav"));
     let constant = told("one.scene.json --to wav -o scene.wav".to_owned());
     assert_eq!(constant["seconds"], 5.0);
     for name in ["level_db", "third_octave_error_rms_db"] {
@@ -498,12 +494,7 @@ fn every_way_out_carries_the_licence() {
     std::fs::copy(place.path("hum.htex"), place.path("x.bin.license")).unwrap();
     let (_, error) = run(&place, "bake x.bin.license -o x.bin", 2);
     assert!(error.contains("it is read here"), "{error}");
-    let scene = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": "hum.htex" }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-    });
-    place.write("hum.scene.json", scene.to_string());
+    place.scene("hum.scene.json", "hum.htex", &json!({}));
     run(&place, "render hum.scene.json --seconds 1 -o hum.csv", 0);
     run(&place, "render hum.scene.json --seconds 1 -o scene.wav", 0);
     ["hum.csv.license", "scene.wav"].iter().for_each(|file| has_both(file));

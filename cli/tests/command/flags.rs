@@ -1,6 +1,6 @@
 //! Extreme numbers for every numeric flag.
 
-use crate::common::Place;
+use crate::common::{Place, words};
 
 const EDGES: &[&str] =
     &["0", "-1", "5e-324", "1e19", "1e300", "18446744073709551616", "nan", "-inf", "", "\u{1b}[2J"];
@@ -62,9 +62,7 @@ fn flags_at_edges_end_well_or_in_a_sentence() {
     assert_eq!(place.run(&words(made)).code(), 0);
     let made = "lib pack cloth.htexlib cloth.htex";
     assert_eq!(place.run(&words(made)).code(), 0);
-    let scene = r#"{"htex_scene": "1.0", "surfaces": [{"asset": "cloth.htex"}],
-        "motion": {"constant": {"speed_mm_s": 80, "force_n": 0.4}}, "duration_s": 0.1}"#;
-    place.write("scene.json", scene);
+    place.scene("scene.json", "cloth.htex", &serde_json::json!({ "duration_s": 0.1 }));
     let hum = r#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
         "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
     place.write("hum.haptic", hum);
@@ -86,8 +84,4 @@ fn flags_at_edges_end_well_or_in_a_sentence() {
     }
     println!("{runs} runs, {refused} refused");
     assert!(refused > runs / 2 && refused < runs);
-}
-
-fn words(command: &str) -> Vec<&str> {
-    command.split_whitespace().collect()
 }

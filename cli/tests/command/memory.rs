@@ -12,13 +12,9 @@ fn an_hour_takes_no_more_memory_than_a_second() {
     let place = Place::new();
     let asset = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");
     place.write("vinyl.htex", std::fs::read(asset).unwrap());
-    let scene = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": "vinyl.htex", "representation": "speak" }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-        "device": { "adapter": "file", "rate_hz": RATE_HZ },
-    });
-    place.write("s.scene.json", scene.to_string());
+    let surfaces = json!([{ "asset": "vinyl.htex", "representation": "speak" }]);
+    let device = json!({ "adapter": "file", "rate_hz": RATE_HZ });
+    place.scene("s.scene.json", "", &json!({ "surfaces": surfaces, "device": device }));
     let memory_kib = |seconds: u64| {
         let length = seconds.to_string();
         let mut render = place.command(&["render", "s.scene.json", "-o", "s.raw"]);

@@ -40,8 +40,7 @@ fn asset(place: &Place, models: usize, hostile: &str) {
         *plugin = Plugin::new(&plugin.model, "1.0.0", module);
     }
     place.write("hostile.htex", asset.to_bytes().unwrap());
-    let scene = r#"{"htex_scene":"1.0","surfaces":[{"asset":"hostile.htex"}],"motion":{"constant":{"speed_mm_s":80,"force_n":0.4}},"duration_s":1}"#;
-    place.write("scene.json", scene);
+    place.scene("scene.json", "hostile.htex", &serde_json::json!({ "duration_s": 1 }));
 }
 
 fn measured(place: &Place, arguments: &[&str]) -> End {

@@ -14,14 +14,8 @@ fn place() -> Place {
     place.recording("vinyl");
     place.write("cloth.htex", std::fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap());
     place.write("rig.csv", "frequency_hz,magnitude\n20,1\n1000,1\n");
-    let scene = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": "cloth.htex" }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-        "device": { "response": "rig.csv" },
-        "duration_s": 1,
-    });
-    place.write("s.scene.json", scene.to_string());
+    let more = json!({ "device": { "response": "rig.csv" }, "duration_s": 1 });
+    place.scene("s.scene.json", "cloth.htex", &more);
     place
 }
 
@@ -88,14 +82,7 @@ fn an_unnamed_file_is_called_as_its_scene_and_format() {
         (".cloth.scene.json", json!({}), "cloth.wav"),
         (".display.v2.scene.json", display, "display.v2.wav"),
     ] {
-        let text = json!({
-            "htex_scene": "1.0",
-            "surfaces": [{ "asset": "cloth.htex" }],
-            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-            "device": device,
-            "duration_s": 0.1,
-        });
-        place.write(scene, text.to_string());
+        place.scene(scene, "cloth.htex", &json!({ "device": device, "duration_s": 0.1 }));
         let run = place.run(&["render", scene]);
         assert_eq!(run.code(), 0, "{}", run.error());
         assert!(entries(&place).iter().any(|(name, _)| name == file), "{file}");
@@ -273,11 +260,7 @@ fn names_that_are_no_unicode_are_kept() {
     };
     let before = std::fs::read_dir(place.path(".")).unwrap().count();
     std::fs::copy(place.path("vinyl.csv"), place.path(".").join(named(".csv"))).unwrap();
-    std::fs::write(
-        place.path("own.scene.json"),
-        r#"{"htex_scene":"1.0","surfaces":[{"asset":"cloth.htex"}],"motion":{"constant":{"speed_mm_s":80,"force_n":0.4}},"duration_s":0.2}"#,
-    )
-    .unwrap();
+    place.scene("own.scene.json", "cloth.htex", &json!({ "duration_s": 0.2 }));
     for (command, input, output) in [
         ("fit", named(".csv"), named(".htex")),
         ("info", named(".htex"), OsString::new()),

@@ -22,15 +22,7 @@ fn place() -> Place {
 
 /// A scene of one surface, with `more` over it.
 fn scene(place: &Place, more: Value) -> PathBuf {
-    let mut scene = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": "coarse-fabric.htex" }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-    });
-    for (key, value) in more.as_object().unwrap() {
-        scene[key] = value.clone();
-    }
-    place.write("s.scene.json", scene.to_string())
+    place.scene("s.scene.json", "coarse-fabric.htex", &more)
 }
 
 fn keys(value: &Value) -> BTreeSet<&str> {

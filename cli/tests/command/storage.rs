@@ -320,11 +320,5 @@ fn an_ended_program_leaves_no_copy() {
 }
 
 fn scene(bench: &Bench, asset: &str) {
-    let scene = json!({
-        "htex_scene": "1.0",
-        "surfaces": [{ "asset": asset }],
-        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-        "duration_s": 0.2,
-    });
-    bench.place.write("s.scene.json", scene.to_string());
+    bench.place.scene("s.scene.json", asset, &json!({ "duration_s": 0.2 }));
 }

@@ -8,6 +8,7 @@ use crate::common::{Place, Run};
 use crate::model::{ID, with_descriptor};
 use htex::model::Search;
 use htex::{Registry, Texture, VoiceOptions};
+use serde_json::json;
 
 pub(crate) const FIELDS: &str = concat!(
     r#"{"name":"centre_hz","unit":"Hz","kind":{"type":"scalar"},"min":5,"max":2000,"store":{"type":"f32"},"description":"C."},"#,
@@ -156,11 +157,8 @@ fn an_older_installed_model_does_not_break_an_asset() {
     assert_eq!(run.code(), 0, "{}", run.error());
     let run = place.run(&[&fit[..], &["plain.htex", "--plugin", "new.wasm"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
-    place.write(
-        "scene.json",
-        r#"{"htex_scene":"1.0","surfaces":[{"asset":"embedded.htex","representation":"hostile"}],
-            "motion":{"constant":{"speed_mm_s":80,"force_n":0.4}},"duration_s":0.2}"#,
-    );
+    let surfaces = json!([{ "asset": "embedded.htex", "representation": "hostile" }]);
+    place.scene("scene.json", "", &json!({ "surfaces": surfaces, "duration_s": 0.2 }));
 
     let mut older = vec![old.clone()];
     #[cfg(unix)]

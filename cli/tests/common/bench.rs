@@ -27,17 +27,9 @@ impl Bench {
         for name in ["coarse-fabric.htex", "vinyl.htex", "hand.csv"] {
             place.write(name, std::fs::read(format!("{EXAMPLES}/{name}")).unwrap());
         }
-        let mut scene = json!({
-            "htex_scene": "1.0",
-            "surfaces": [{ "asset": "coarse-fabric.htex" }],
-            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-            "device": { "adapter": "daq", "profile": PAPER },
-            "seed": 1,
-        });
-        for (key, value) in more.as_object().unwrap() {
-            scene[key] = value.clone();
-        }
-        place.write(SCENE, scene.to_string());
+        let mut all = json!({ "device": { "adapter": "daq", "profile": PAPER }, "seed": 1 });
+        all.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        place.scene(SCENE, "coarse-fabric.htex", &all);
         Self(place)
     }
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{Mutex, PoisonError};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 /// Files by their paths in a folder.
@@ -52,6 +52,19 @@ impl Place {
         let run = self.run(arguments);
         assert_eq!(run.code(), 0, "{arguments:?}: {}", run.error());
         serde_json::from_slice(&run.0.stdout).unwrap()
+    }
+
+    /// A scene of an asset, with `more` over it.
+    pub fn scene(&self, name: &str, asset: &str, more: &Value) -> PathBuf {
+        let mut scene = json!({
+            "htex_scene": "1.0",
+            "surfaces": [{ "asset": asset }],
+            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+        });
+        for (key, value) in more.as_object().unwrap() {
+            scene[key] = value.clone();
+        }
+        self.write(name, scene.to_string())
     }
 
     /// A simulated recording of 4 s.

@@ -117,14 +117,27 @@ asset = 'vinyl.htex'
 /// Texts, and what replaces them.
 pub type Edits<'a> = &'a [(&'a str, &'a str)];
 
+/// Two attributes that are rated, before the textures.
+pub const RATED: &str = "[[attributes]]
+name = 'similarity'
+question = 'How similar is it?'
+[[attributes]]
+name = 'roughness'
+question = 'How rough is it?'
+[[textures]]";
+
 /// A study of one texture; `more` replaces texts of it.
 pub fn short(more: Edits<'_>) -> Place {
     let place = Place::new();
+    write(&place, more);
+    place
+}
+
+pub fn write(place: &Place, more: Edits<'_>) {
     place.write("vinyl.htex", fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap());
     let replaced = |text: String, (from, to): &(&str, &str)| {
         assert!(text.contains(from), "{from}");
         text.replacen(from, to, 1)
     };
     place.write("study.toml", more.iter().fold(SHORT.to_owned(), replaced));
-    place
 }

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::browser::Browser;
 use crate::common::Place;
-use crate::studies::{EXAMPLES, PAPER, answers};
+use crate::studies::{PAPER, answers, short};
 
 /// Connections in a test, and with `HTEX_WHOLE`.
 const SAMPLE: usize = 60;
@@ -23,19 +23,6 @@ const WHOLE: usize = 1_000;
 const MOST: Duration = Duration::from_millis(100);
 const RECORD: &str = "Dev1_ao0.txt";
 const RATE_HZ: f64 = 20_000.0;
-
-const STUDY: &str = "
-htex_study = '1.0'
-participants = ['Ann']
-models = ['ar', 'sbeta']
-repetitions = 3
-trial_s = TRIAL_S
-phases = ['testing']
-motion = MOTION
-device = { adapter = 'daq', drive_v = 120 }
-[[textures]]
-asset = 'vinyl.htex'
-";
 
 /// A session on a page and on the card, in real time.
 struct Session {
@@ -47,11 +34,15 @@ struct Session {
 
 impl Session {
     fn start(trial_s: f64, motion: &str, more: &[&str]) -> Self {
-        let place = Place::new();
-        let vinyl = fs::read(format!("{EXAMPLES}/vinyl.htex"));
-        place.write("vinyl.htex", vinyl.unwrap());
-        let study = STUDY.replace("TRIAL_S", &format!("{trial_s:?}"));
-        place.write("study.toml", study.replace("MOTION", motion));
+        let place = short(&[
+            ("'Ann', 'Bob'", "'Ann'"),
+            ("repetitions = 1", "repetitions = 3"),
+            ("trial_s = 0.05", &format!("trial_s = {trial_s:?}")),
+            ("'gain', ", ""),
+            ("gain = { method = 'adjustment' }\n", ""),
+            ("{ constant = { speed_mm_s = 80, force_n = 0.4 } }", motion),
+            ("adapter = 'file'", "adapter = 'daq', drive_v = 120"),
+        ]);
         let driver = format!("driver={}", crate::simulated::built().display());
         let run = ["study", "run", "study.toml", "--participant", "Ann", "--page"];
         let card = ["--profile", PAPER, "--set", &driver];

@@ -6,31 +6,17 @@ use std::time::{Duration, Instant};
 
 use crate::browser::{Browser, Tab, fits_tablets, status};
 use crate::common::Place;
+use crate::studies::{self, Edits, RATED};
 use serde_json::Value;
 
-const VINYL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");
-const STUDY: &str = "
-htex_study = '1.0'
-name = 'Similarity <of> textures'
-participants = ['Ann']
-models = ['ar', 'sbeta']
-repetitions = 1
-trial_s = 0.1
-masking_noise = { level_dbfs = -30 }
-rests = { every = 1 }
-motion = 'live'
-device = { adapter = 'file' }
-training = { trials = 1 }
-[[attributes]]
-name = 'similarity'
-question = 'How similar is the rendered texture to the real one?'
-[[attributes]]
-name = 'roughness'
-question = 'How rough is it?'
-[[textures]]
-name = 'vinyl'
-asset = 'vinyl.htex'
-";
+const STUDY: Edits<'_> = &[
+    ("'Ann', 'Bob'", "'Ann'"),
+    ("trial_s = 0.05", "trial_s = 0.1\nrests = { every = 1 }\ntraining = { trials = 1 }"),
+    ("phases = ['gain', 'testing']", "masking_noise = { level_dbfs = -30 }"),
+    ("gain = { method = 'adjustment' }", "name = 'Similarity <of> textures'"),
+    ("{ constant = { speed_mm_s = 80, force_n = 0.4 } }", "'live'"),
+    ("[[textures]]", RATED),
+];
 
 /// A session that asks on a page, and the page's address.
 fn session(place: &Place) -> (Child, String) {
@@ -38,9 +24,8 @@ fn session(place: &Place) -> (Child, String) {
 }
 
 /// A session of a study.
-fn asked(place: &Place, study: &str, more: &[&str]) -> (Child, String) {
-    place.write("vinyl.htex", fs::read(VINYL).unwrap());
-    place.write("study.toml", study);
+fn asked(place: &Place, study: Edits<'_>, more: &[&str]) -> (Child, String) {
+    studies::write(place, study);
     let run = ["study", "run", "study.toml", "--participant", "Ann", "--page"];
     let mut command = place.command(&[&run, more].concat());
     let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
@@ -171,24 +156,19 @@ fn one_press_is_one_answer_in_one_tab() {
     assert_eq!(ratings(&place), [3, 6, 5, 0, 5, 0]);
 }
 
-const MATCHED: &str = "
-htex_study = '1.0'
-name = 'Matching'
-participants = ['Ann']
-models = ['ar']
-repetitions = 2
-trial_s = 2
-phases = ['gain', 'testing']
-start_db = 0
-gain = { method = 'METHOD', reversals = 3 }
-masking_noise = { level_dbfs = -30 }
-rests = { every = 1, seconds = 2 }
-motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }
-device = { adapter = 'file' }
-[[textures]]
-name = 'coarse_fabric'
-asset = 'vinyl.htex'
-";
+/// A session of two trials that are matched.
+fn matching(place: &Place, method: &str) -> (Child, String) {
+    let gain = format!("start_db = 0\ngain = {{ method = '{method}', reversals = 3 }}");
+    let study = [
+        ("'Ann', 'Bob'", "'Ann'"),
+        ("'ar', 'sbeta'", "'ar'"),
+        ("repetitions = 1", "repetitions = 2\nmasking_noise = { level_dbfs = -30 }"),
+        ("trial_s = 0.05", "trial_s = 2\nrests = { every = 1, seconds = 2 }"),
+        ("gain = { method = 'adjustment' }", &gain),
+        ("[[textures]]", "[[textures]]\nname = 'coarse_fabric'"),
+    ];
+    asked(place, &study, &[])
+}
 
 /// Presses Page Up so many times, and says that the texture is felt.
 fn felt_after(browser: &mut Browser, tab: &Tab, steps: usize) {
@@ -232,7 +212,7 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
         return;
     }
     let place = Place::new();
-    let (mut child, url) = asked(&place, &MATCHED.replace("METHOD", method), &[]);
+    let (mut child, url) = matching(&place, method);
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "You will match its strength");
@@ -325,7 +305,7 @@ fn masking_noise_has_its_level_and_its_times() {
         return;
     }
     let place = Place::new();
-    let (mut child, url) = asked(&place, &MATCHED.replace("METHOD", "descending"), &[]);
+    let (mut child, url) = matching(&place, "descending");
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "You will match its strength");

@@ -7,31 +7,19 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::common::Place;
+use crate::studies::{Edits, RATED, short};
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, tcgetattr};
 
-const VINYL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");
-const STUDY: &str = "
-htex_study = '1.0'
-participants = ['Ann']
-models = ['ar']
-repetitions = 2
-trial_s = 0.2
-phases = ['gain', 'testing']
-start_db = -4
-gain = { method = 'adjustment' }
-motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }
-device = { adapter = 'file' }
-[[attributes]]
-name = 'similarity'
-question = 'How similar is it?'
-[[attributes]]
-name = 'roughness'
-question = 'How rough is it?'
-[[textures]]
-asset = 'vinyl.htex'
-";
+const STUDY: Edits<'_> = &[
+    ("'Ann', 'Bob'", "'Ann'"),
+    ("'ar', 'sbeta'", "'ar'"),
+    ("repetitions = 1", "repetitions = 2"),
+    ("trial_s = 0.05", "trial_s = 0.2"),
+    ("gain = {", "start_db = -4\ngain = {"),
+    ("[[textures]]", RATED),
+];
 /// Longer than a key counts as held.
 const APART: Duration = Duration::from_millis(800);
 
@@ -92,22 +80,15 @@ impl Session {
     }
 }
 
-fn place() -> Place {
-    let place = Place::new();
-    place.write("vinyl.htex", fs::read(VINYL).unwrap());
-    place.write("study.toml", STUDY);
-    place
-}
-
 /// Enter and the space bar, of which the second one comes when the next trial waits: the rest ends,
 /// and no trial begins.
 #[test]
 fn a_double_press_at_a_rest_begins_no_trial() {
-    let place = place();
-    let rests = STUDY
-        .replace("phases = ['gain', 'testing']", "phases = ['testing']\nrests = { every = 1 }")
-        .replace("start_db = -4\ngain = { method = 'adjustment' }\n", "");
-    place.write("study.toml", rests);
+    let rests = [
+        ("phases = ['gain', 'testing']", "phases = ['testing']\nrests = { every = 1 }"),
+        ("start_db = -4\ngain = { method = 'adjustment' }\n", ""),
+    ];
+    let place = short(&[STUDY, &rests].concat());
     for apart_ms in [150, 450] {
         let mut session = Session::start(&place);
         session.says("Enter to begin", 1);
@@ -145,7 +126,7 @@ fn kept(place: &Place, key: &str) -> Vec<serde_json::Value> {
 
 #[test]
 fn single_keys_answer_without_enter() {
-    let place = place();
+    let place = short(STUDY);
     let mut session = Session::start(&place);
     session.says("Enter to begin", 1);
     let modes = tcgetattr(&session.terminal).unwrap().local_modes;
@@ -185,7 +166,7 @@ fn single_keys_answer_without_enter() {
 #[test]
 fn the_terminal_is_restored_after_a_signal() {
     for signal in [Signal::INT, Signal::TERM, Signal::HUP] {
-        let place = place();
+        let place = short(STUDY);
         let mut session = Session::start(&place);
         session.says("Enter to begin", 1);
         assert!(!session.is_restored());

@@ -7,13 +7,7 @@ use serde_json::{Value, json};
 use crate::common::{Files, Place, words};
 
 /// Half a second of a hum that grows.
-fn haptic() -> String {
-    json!({"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
-        "amplitude": [{"time": 0, "amplitude": 0.4}, {"time": 0.5, "amplitude": 0.6}],
-        "frequency": [{"time": 0, "frequency": 0.5}],
-    }}}})
-    .to_string()
-}
+const HAPTIC: &str = include_str!("../../../sdk/make/exchange/tests/hum.haptic");
 
 /// A model file of the Penn Haptic Texture Toolkit with four nodes, of which two are silent.
 const HATT: &str = include_str!("../../../sdk/make/exchange/tests/felt.xml");
@@ -34,7 +28,7 @@ fn imported() -> Place {
 
 fn import() -> Files {
     let place = Place::new();
-    place.write("hum.haptic", haptic());
+    place.write("hum.haptic", HAPTIC);
     run(
         &place,
         &format!("import hum.haptic {GIVEN} --model bands --license CC0-1.0 -o hum.htex"),
@@ -46,7 +40,7 @@ fn import() -> Files {
 #[test]
 fn a_signal_is_imported_with_what_it_does_not_say() {
     let place = Place::new();
-    place.write("hum.haptic", haptic());
+    place.write("hum.haptic", HAPTIC);
     let line = format!(
         "import hum.haptic {GIVEN} --model bands --option bands.bands=12 --license CC0-1.0 -o hum.htex"
     );
@@ -123,7 +117,7 @@ fn a_silent_first_condition_gives_way_to_the_strongest() {
 #[test]
 fn an_effect_below_the_detection_threshold_is_not_exported() {
     let place = Place::new();
-    place.write("hum.haptic", haptic());
+    place.write("hum.haptic", HAPTIC);
     let import = "import hum.haptic --speed 80 --force 0.5 --model bands --license CC0-1.0";
     run(&place, &format!("{import} --full-scale 1e-7 -o faint.htex"), 0);
     for format in ["ahap", "haptic", "hjif", "android", "wav"] {
@@ -175,7 +169,7 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
 #[test]
 fn an_import_takes_no_flag_that_the_format_has_no_use_for() {
     let place = Place::new();
-    place.write("hum.haptic", haptic());
+    place.write("hum.haptic", HAPTIC);
     let (_, error) = run(&place, &format!("import hum.haptic {GIVEN} --grid auto -o hum.htex"), 2);
     assert!(
         error.contains("takes no --grid; leave it out (it takes --full-scale, --quantity"),
@@ -186,7 +180,7 @@ fn an_import_takes_no_flag_that_the_format_has_no_use_for() {
 #[test]
 fn files_that_are_none_are_refused_with_their_place() {
     let place = Place::new();
-    place.write("loud.haptic", haptic().replace("0.6", "1.6"));
+    place.write("loud.haptic", HAPTIC.replace("0.6", "1.6"));
     place.write("hum.mp3", "");
     let (_, error) = run(&place, &format!("import loud.haptic {GIVEN} -o out.htex"), 1);
     let pointer = "loud.haptic: /signals/continuous/envelopes/amplitude/1/amplitude: ";
@@ -435,7 +429,7 @@ fn formats_lists_what_is_kept_and_lost() {
 #[test]
 fn every_way_out_carries_the_licence() {
     let place = Place::new();
-    place.write("hum.haptic", haptic());
+    place.write("hum.haptic", HAPTIC);
     let stated = "--license CC-BY-4.0 --author Ada";
     run(&place, &format!("import hum.haptic {GIVEN} --model bands {stated} -o hum.htex"), 0);
     let has_both = |file: &str| {

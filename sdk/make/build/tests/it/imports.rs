@@ -13,29 +13,11 @@ use htex_host::Registry;
 const PROGRAM: &str = "htex-build tests";
 
 /// Half a second of a hum that grows stronger.
-const HAPTIC: &str = r#"{"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
-    "amplitude": [{"time": 0, "amplitude": 0.4}, {"time": 0.5, "amplitude": 0.6}], "frequency": [{"time": 0, "frequency": 0.5}]}}}}"#;
+const HAPTIC: &str = include_str!("../../../exchange/tests/hum.haptic");
 
 /// A model file of the Penn Haptic Texture Toolkit with four nodes. The first two are silent.
 fn hatt(material: &str) -> String {
-    let node = |number: usize, speed: f64, force: f64, variance: f64| {
-        format!(
-            "<model><modNum>{number}</modNum><ARcoeff><value>1</value><value>-0.9</value><value>0.5</value></ARcoeff>\
-             <MAcoeff><value>1</value><value>0.3</value></MAcoeff><var>{variance}</var><gain>2.5</gain>\
-             <speedMod>{speed}</speedMod><forceMod>{force}</forceMod></model>"
-        )
-    };
-    let nodes = [
-        node(1, 0.0, 0.0, 0.0),
-        node(2, 240.0, 0.0, 0.0),
-        node(3, 0.0, 3.0, 0.01),
-        node(4, 240.0, 3.0, 0.02),
-    ];
-    format!(
-        "<?xml version=\"1.0\"?>\n<modelSet texture=\"7\">\n<material>{material}</material>\n<AccelUnits>m/s^2</AccelUnits>\n\
-         <SpeedUnits>mm/s</SpeedUnits>\n<ForceUnits>N</ForceUnits>\n<SampleRate>1000</SampleRate>\n<numMod>4</numMod>\n{}\n</modelSet>\n",
-        nodes.concat()
-    )
+    include_str!("../../../exchange/tests/felt.xml").replace("Felt", material)
 }
 
 const SIGNAL: &str = r#"

@@ -89,6 +89,10 @@ fn a_setting_that_means_nothing_is_refused() {
     assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
 }
 
+/// A second of a sine at half of full scale.
+const HUM: &[u8] = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
+    "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
+
 fn made() -> htex_play::Texture {
     let registry = Registry::builtin();
     let how = Import {
@@ -105,17 +109,13 @@ fn made() -> htex_play::Texture {
         },
         ..Import::default()
     };
-    let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
-        "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
-    let imported = import("hum.haptic", file, &how, &registry).unwrap();
+    let imported = import("hum.haptic", HUM, &how, &registry).unwrap();
     htex_play::Texture::with_registry(imported.asset, registry)
 }
 
 #[test]
 fn what_a_file_does_not_say_is_asked_for_and_kept() {
-    let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
-        "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
-    let none = import("a.haptic", file, &Import::default(), &Registry::builtin());
+    let none = import("a.haptic", HUM, &Import::default(), &Registry::builtin());
     let error = none.unwrap_err().to_string();
     for word in ["how strong 1 is", "`full_scale`, `speed` and `force`"] {
         assert!(error.contains(word), "{error}");

@@ -17,10 +17,7 @@ fn a_texture_is_made_of_parameters() {
     assert!(place.run(&["info", "new.htex"]).text().contains("made by hand"));
     assert_eq!(place.run(&["validate", "new.htex"]).code(), 0);
     assert_eq!(place.run(&["synth", "new.htex", "--seconds", "20", "-o", "new.wav"]).code(), 0);
-    let mut wav = hound::WavReader::open(place.path("new.wav")).unwrap();
-    let samples: Vec<f32> = wav.samples().map(Result::unwrap).collect();
-    let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
-    let rms = (power / samples.len() as f64).sqrt();
+    let rms = crate::common::rms(&place.samples("new.wav"));
     assert!((rms / 0.02 - 1.0).abs() < 0.05, "{rms}");
 }
 

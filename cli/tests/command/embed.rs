@@ -1,6 +1,6 @@
 //! An asset that embeds its model plays where that model was never installed.
 
-use crate::common::{Place, stated};
+use crate::common::{Place, rms, stated};
 use serde_json::json;
 
 /// Builds the third-party example in C to `bursts.wasm`; false without a compiler for it.
@@ -42,10 +42,8 @@ fn a_third_party_model_travels_with_its_asset() {
     let synth = ["synth", "b.htex", "--model", "bursts", "--seconds", "2", "-o", "b.wav"];
     let run = place.run(&synth);
     assert_eq!(run.code(), 0, "{}", run.error());
-    let mut wav = hound::WavReader::open(place.path("b.wav")).unwrap();
-    let power: f64 = wav.samples::<f32>().map(|x| f64::from(x.unwrap()).powi(2)).sum();
     let level = stated(&fitted, 0)["level_rms"].as_f64().unwrap();
-    let ratio = (power / 40_000.0).sqrt() / level;
+    let ratio = rms(&place.samples("b.wav")) / level;
     assert!((0.8..1.2).contains(&ratio), "two seconds of bursts: {ratio}");
 
     let forbidden = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());

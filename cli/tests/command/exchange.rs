@@ -86,10 +86,7 @@ fn a_silent_first_condition_gives_way_to_the_strongest() {
     assert_eq!(spectrum(""), spectrum("--speed 240 --force 3"));
     assert_eq!(spectrum("--speed 120"), spectrum("--speed 120 --force 3"));
     assert_eq!(spectrum("--force 2"), spectrum("--speed 240 --force 2"));
-    let largest = |file: &str| {
-        let mut wav = hound::WavReader::open(place.path(file)).unwrap();
-        wav.samples::<f32>().fold(0.0f32, |most, x| most.max(x.unwrap().abs()))
-    };
+    let largest = |file: &str| place.samples(file).iter().fold(0.0f32, |most, x| most.max(x.abs()));
     let (_, error) = run(&place, "synth felt.htex --seconds 0.5 -o felt.wav", 0);
     assert!(!error.contains("all samples are 0"), "{error}");
     assert!(largest("felt.wav") > 0.3);
@@ -472,12 +469,7 @@ fn every_way_out_carries_the_licence() {
     has_both("with.wav");
     run(&place, "edit hum.htex --license= --author= -o bare.htex", 0);
     run(&place, "synth bare.htex --seconds 1 -o without.wav", 0);
-    let samples = |file: &str| {
-        let wav = hound::WavReader::open(place.path(file)).unwrap();
-        let samples = wav.into_samples::<f32>();
-        samples.map(Result::unwrap).collect::<Vec<_>>()
-    };
-    assert_eq!(samples("with.wav"), samples("without.wav"));
+    assert_eq!(place.samples("with.wav"), place.samples("without.wav"));
 
     // What has no place has a file beside it, which is an output like the other one.
     run(&place, "bake hum.htex -o hum.h", 0);

@@ -17,11 +17,6 @@ fn place() -> Place {
     place
 }
 
-fn samples(place: &Place, name: &str) -> Vec<f32> {
-    let mut wav = hound::WavReader::open(place.path(name)).unwrap();
-    wav.samples::<f32>().map(Result::unwrap).collect()
-}
-
 /// A display that is a file, 100 V at most.
 const DISPLAY: [&str; 6] =
     ["--device", "file", "--set", "quantity=display_voltage", "--set", "limit_v=100"];
@@ -62,7 +57,7 @@ fn a_gain_is_found_by_adjustment_and_played_with() {
         run(&play, "")
     };
     assert_eq!(play("Ann", "a.wav").0, Some(0));
-    let peak = samples(&place, "a.wav").iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
+    let peak = place.samples("a.wav").iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
     assert!(f64::from(peak) < 1.1 * drive_v && f64::from(peak) > 0.6 * drive_v, "{peak} V");
     let (code, error) = play("Bob", "b.wav");
     assert_eq!(code, Some(1));
@@ -98,7 +93,7 @@ fn one_gain_serves_all_representations_of_a_texture() {
         let play = ["play", file, "--model", model, "--seconds", "4", "--set", "path=d.wav"];
         let (code, error) = run(&[&play, &ann[..], more].concat(), "");
         assert_eq!(code, Some(0), "{model}: {error}");
-        let volts = samples(&place, "d.wav");
+        let volts = place.samples("d.wav");
         let squares: Vec<f64> =
             volts[2_000..volts.len() - 2_000].iter().map(|v| f64::from(*v).powi(2)).collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
@@ -163,7 +158,7 @@ fn a_gain_kept_by_the_hash_of_its_asset_is_found_and_replaced() {
     let play = ["play", "vinyl.htex", "--seconds", "1", "--set", "path=d.wav", "--person", "Ann"];
     let (code, error) = run(&play, "");
     assert_eq!(code, Some(0), "{error}");
-    let peak = samples(&place, "d.wav").iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
+    let peak = place.samples("d.wav").iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
     assert!((25.0..60.0).contains(&peak), "{peak} V");
     // The level at which it was found is unknown.
     let (code, error) = run(&[&play[..], &["--levels", "own"]].concat(), "");

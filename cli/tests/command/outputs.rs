@@ -1,9 +1,8 @@
 //! Files that commands overwrite, and files that they leave.
 
 use std::process::Stdio;
-use std::time::{Duration, Instant};
 
-use crate::common::Place;
+use crate::common::{Place, until};
 use serde_json::json;
 
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
@@ -141,13 +140,8 @@ fn an_ended_program_leaves_no_part() {
         let before = entries(&place);
         let arguments = ["synth", "cloth.htex", "--seconds", "20000", "-o", "long.wav"];
         let mut child = place.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
-        let start = Instant::now();
-        while entries(&place).len() == before.len() {
-            assert!(start.elapsed() < Duration::from_secs(60), "nothing is written");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        let id = child.id().to_string();
-        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
+        until("something is written", || entries(&place).len() > before.len());
+        crate::common::signal(&child, signal);
         assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
         assert!(entries(&place) == before, "{signal}");
     }

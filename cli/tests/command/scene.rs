@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::common::{Place, entries};
+use crate::common::{Place, entries, signal, until};
 use serde_json::{Value, json};
 
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
@@ -43,16 +43,8 @@ fn start(place: &Place, arguments: &[&str]) -> Child {
 
 /// Waits until a file is being written in the place.
 fn wait_for_part(place: &Place) {
-    let start = Instant::now();
-    while !entries(&place.path("")).iter().any(|name| name.ends_with(".part")) {
-        assert!(start.elapsed() < Duration::from_secs(60), "nothing is written");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
-
-fn samples(place: &Place, name: &str) -> Vec<f32> {
-    let mut wav = hound::WavReader::open(place.path(name)).unwrap();
-    wav.samples::<f32>().map(Result::unwrap).collect()
+    let is_part = |name: &String| name.ends_with(".part");
+    until("something is written", || entries(&place.path("")).iter().any(is_part));
 }
 
 #[test]
@@ -77,7 +69,7 @@ fn the_examples_are_planned_and_rendered_and_what_is_planned_runs() {
         }
         assert_eq!(names(&run["stages_run"]), names(&plan["stages"]), "{name}");
         assert_eq!(run["file"], "o.wav");
-        let samples = samples(&place, "o.wav");
+        let samples = place.samples("o.wav");
         assert_eq!(run["frames"], samples.len(), "{name}");
         let peak = samples.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
         assert!((run["peak"].as_f64().unwrap() - f64::from(peak)).abs() < 1e-6 && peak > 0.0);
@@ -157,18 +149,11 @@ fn a_live_motion_comes_through_standard_input() {
     let error = String::from_utf8(done.stderr).unwrap();
     assert!(done.status.success(), "{error}");
     assert!(error.contains("line 2, \"faster\""), "{error}");
-    let samples = samples(&place, "l.wav");
+    let samples = place.samples("l.wav");
     assert!(samples.iter().any(|x| x.abs() > 1e-3), "it is silent");
     assert!(samples.len() > 5000, "{} samples", samples.len());
     // Without the option the same scene says what it wants.
     assert_eq!(place.run(&["play", "s.scene.json"]).code(), 2);
-}
-
-#[cfg(unix)]
-fn interrupt(child: &Child) {
-    let id = child.id().to_string();
-    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
-    assert!(sent.unwrap().success());
 }
 
 #[cfg(unix)]
@@ -180,10 +165,10 @@ fn an_interrupted_play_ends_at_zero_and_an_interrupted_render_leaves_nothing() {
     let child = start(&place, &["play", "s.scene.json", "--set", "path=p.wav"]);
     wait_for_part(&place);
     std::thread::sleep(Duration::from_millis(300));
-    interrupt(&child);
+    signal(&child, "-INT");
     let done = child.wait_with_output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let played = samples(&place, "p.wav");
+    let played = place.samples("p.wav");
     let peak = played.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
     let last = played.last().unwrap();
     assert!(last.abs() < 0.02 * peak, "it ends at {last} V, and its peak is {peak} V");
@@ -192,7 +177,7 @@ fn an_interrupted_play_ends_at_zero_and_an_interrupted_render_leaves_nothing() {
     let before = entries(&place.path(""));
     let child = start(&place, &["render", "s.scene.json", "-o", "r.raw"]);
     wait_for_part(&place);
-    interrupt(&child);
+    signal(&child, "-INT");
     let done = child.wait_with_output().unwrap();
     assert_eq!(done.status.code(), Some(1));
     assert_eq!(entries(&place.path("")), before);

@@ -1,9 +1,8 @@
 //! Inputs and outputs by URI: the command against an S3-compatible server on loopback, with faults.
 
 use std::process::{Command, Output};
-use std::time::{Duration, Instant};
 
-use crate::common::{Place, entries, words};
+use crate::common::{Place, entries, signal, until, words};
 use htex_object_server::{ACCESS_KEY, Fault, SECRET_KEY, Server};
 use serde_json::json;
 
@@ -307,14 +306,9 @@ fn an_ended_program_leaves_no_copy() {
     let bench = Bench::new();
     bench.server.fail(|_, _| Fault::Stall(300_000));
     let mut child = bench.command(&["process", "s3://surfaces/vinyl.csv"]).spawn().unwrap();
-    let begun = Instant::now();
-    while bench.server.requests().is_empty() {
-        assert!(begun.elapsed() < Duration::from_secs(60), "nothing is asked for");
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    until("something is asked for", || !bench.server.requests().is_empty());
     assert!(!bench.copies().is_empty());
-    let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
-    assert!(sent.unwrap().success());
+    signal(&child, "-TERM");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(bench.copies().is_empty());
 }

@@ -3,7 +3,7 @@
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::common::{Place, entries, words};
+use crate::common::{Place, entries, rms, words};
 use crate::model::ID;
 use crate::versions::{FIELDS, noise};
 use htex_host::{Registry, Search};
@@ -246,10 +246,8 @@ fn a_loop_repeats_in_a_file_and_a_filter_plays_the_level() {
         let run =
             place.run(&["synth", "a.htex", "--seconds", "4", "--quality", quality, "-o", &out]);
         assert_eq!(run.code(), 0, "{}", run.error());
-        let wav = hound::WavReader::open(place.path(&out)).unwrap();
-        wav.into_samples::<f32>().map(Result::unwrap).collect::<Vec<_>>()
+        place.samples(&out)
     };
-    let rms = |x: &[f32]| (x.iter().map(|x| x * x).sum::<f32>() / x.len() as f32).sqrt();
     let (streamed, looped, filtered) = (synth("streamed"), synth("loop:1.5"), synth("filter"));
     assert_eq!(looped[..30_000], looped[30_000..60_000]);
     assert_ne!(streamed[..30_000], streamed[30_000..60_000]);

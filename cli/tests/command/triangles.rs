@@ -77,9 +77,7 @@ fn a_voice_is_as_loud_as_its_ceiling() {
     let rms = |more: &[&str]| {
         let run = synth(more);
         assert_eq!(run.code(), 0, "{}", run.error());
-        let mut wav = hound::WavReader::open(place.path("a.wav")).unwrap();
-        let samples: Vec<f64> = wav.samples::<f32>().map(|x| f64::from(x.unwrap())).collect();
-        (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt()
+        crate::common::rms(&place.samples("a.wav"))
     };
     let free = rms(&[]);
     let bound = rms(&["--ceiling", "1.5"]) / free;

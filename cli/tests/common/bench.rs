@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::common::Place;
+use crate::common::{Place, until};
 use crate::simulated;
 
 pub const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
@@ -55,11 +55,7 @@ impl Bench {
     /// As [`Self::start`], by a command.
     pub fn started(&self, command: &mut Command) -> Child {
         let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
-        let start = Instant::now();
-        while self.card_v().iter().all(|v| *v == 0.0) {
-            assert!(start.elapsed() < Duration::from_secs(60), "nothing comes out");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        until("something comes out", || self.card_v().iter().any(|v| *v != 0.0));
         child
     }
 
@@ -115,10 +111,4 @@ pub fn check_failed(done: &Output, words: &[&str]) {
     for word in words {
         assert!(error.contains(word), "{word}: {error}");
     }
-}
-
-pub fn signal(child: &Child, name: &str) {
-    let id = child.id().to_string();
-    let sent = Command::new("kill").args([name, &id]).status();
-    assert!(sent.unwrap().success());
 }

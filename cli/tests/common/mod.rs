@@ -8,8 +8,9 @@ pub mod native;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -87,6 +88,12 @@ impl Place {
         self.write(name, recording);
     }
 
+    /// The samples of a WAV file.
+    pub fn samples(&self, name: &str) -> Vec<f32> {
+        let wav = hound::WavReader::open(self.path(name)).unwrap();
+        wav.into_samples().map(Result::unwrap).collect()
+    }
+
     /// A folder with copies of files that were made once per test program.
     pub fn with(files: &Files) -> Self {
         let place = Self::new();
@@ -131,6 +138,27 @@ impl Run {
     pub fn text(&self) -> String {
         String::from_utf8(self.0.stdout.clone()).unwrap()
     }
+}
+
+pub fn rms(samples: &[f32]) -> f64 {
+    let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
+    (power / samples.len() as f64).sqrt()
+}
+
+/// Waits until something is so, for a minute at most.
+pub fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < Duration::from_secs(60), "not in a minute: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Sends a program a signal, e.g. `-INT`.
+pub fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args([name, &id]).status();
+    assert!(sent.unwrap().success());
 }
 
 /// The words of a line, e.g. of a command.

@@ -1,7 +1,6 @@
 //! Scenes played on the simulated card: the output voltage, and that it is zero after
 //! every failure.
 
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 #[cfg(target_os = "linux")]
@@ -11,17 +10,10 @@ use std::{
     time::Instant,
 };
 
-use crate::bench::{Bench, EXAMPLES, GAIN, PAPER, RATE_HZ, RECORD, SCENE, check_failed, signal};
-use crate::common::Place;
+use crate::bench::{Bench, EXAMPLES, GAIN, PAPER, RATE_HZ, RECORD, SCENE, check_failed};
+use crate::common::{Place, signal};
 use htex_check::device::{Direction, checks_of};
 use serde_json::{Value, json};
-
-/// Volts at the display, from a file.
-fn samples(file: &Path) -> Vec<f32> {
-    let mut wav = hound::WavReader::open(file).unwrap();
-    assert_eq!(f64::from(wav.spec().sample_rate), RATE_HZ);
-    wav.samples::<f32>().map(Result::unwrap).collect()
-}
 
 #[test]
 fn the_card_puts_out_what_the_file_holds() {
@@ -39,7 +31,10 @@ fn the_card_puts_out_what_the_file_holds() {
             let error = String::from_utf8_lossy(&done.stderr);
             assert!(done.status.success(), "{error}");
         }
-        let file_v = samples(&bench.0.path("drive.wav"));
+        // Volts at the display.
+        let file_v = bench.0.samples("drive.wav");
+        let wav = hound::WavReader::open(bench.0.path("drive.wav")).unwrap();
+        assert_eq!(f64::from(wav.spec().sample_rate), RATE_HZ);
         let peak_v = file_v.iter().fold(0.0f32, |peak, v| peak.max(v.abs()));
         assert!(peak_v > 60.0, "{peak_v} V");
         // One zero when it is opened, and half a buffer (200 ms) that leads to the first sample.

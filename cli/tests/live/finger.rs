@@ -9,8 +9,8 @@ mod volts;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-use crate::bench::{Bench, PAPER, RATE_HZ, RECORD, SCENE, signal};
-use crate::common::Place;
+use crate::bench::{Bench, PAPER, RATE_HZ, RECORD, SCENE};
+use crate::common::{Place, signal};
 use serde_json::{Value, json};
 use volts::{Volts, volts};
 

@@ -5,7 +5,8 @@ use std::io::Write;
 use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::bench::{Bench, GAIN, check_failed, signal};
+use crate::bench::{Bench, GAIN, check_failed};
+use crate::common::signal;
 use serde_json::json;
 
 /// The promised latency from a motion to the display, milliseconds.

@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::browser::{Browser, Tab, fits_tablets, pictured, status};
-use crate::common::{Place, entries, words};
+use crate::common::{Place, entries, until, words};
 use serde_json::Value;
 
 /// Rows of a second.
@@ -66,11 +66,7 @@ fn number(browser: &mut Browser, tab: &Tab, id: &str) -> f64 {
 
 /// Waits until an expression is true in a tab.
 fn becomes(browser: &mut Browser, tab: &Tab, expression: &str) {
-    let start = Instant::now();
-    while browser.value(tab, expression) != true {
-        assert!(start.elapsed() < Duration::from_secs(60), "{expression}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    until(expression, || browser.value(tab, expression) == true);
 }
 
 const TARGETS: &str = "--seconds 8 --countdown 3 --target-speed 80 --target-force 0.4 --attempts 3";

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use crate::browser::Browser;
-use crate::common::Place;
+use crate::common::{Place, signal};
 use crate::studies::{PAPER, answers, short};
 
 /// Connections in a test, and with `HTEX_WHOLE`.
@@ -299,9 +299,7 @@ fn ctrl_c_ends_a_session_with_a_request_whose_body_never_comes() {
     let mut stuck = TcpStream::connect(tab.host).unwrap();
     let head = format!("POST /x HTTP/1.1\r\nHost: {}\r\nContent-Length: 4000\r\n\r\n", tab.host);
     stuck.write_all(head.as_bytes()).unwrap();
-    let id = session.child.id().to_string();
-    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
-    assert!(sent.unwrap().success());
+    signal(&session.child, "-INT");
     session.ends();
 }
 

@@ -2,10 +2,10 @@
 
 use std::fs;
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::browser::{Browser, Tab, fits_tablets, status};
-use crate::common::Place;
+use crate::common::{Place, until};
 use crate::studies::{self, Edits, RATED};
 use serde_json::Value;
 
@@ -51,11 +51,7 @@ fn ratings(place: &Place) -> Vec<u64> {
 }
 
 fn wait_for(place: &Place, expected: &[u64]) {
-    let start = Instant::now();
-    while ratings(place) != expected && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    assert_eq!(ratings(place), expected);
+    until(&format!("ratings {expected:?}"), || ratings(place) == expected);
 }
 
 #[test]
@@ -111,17 +107,13 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.slide(&tab);
     for (key, lines) in [("-", 1), ("-", 2), ("Enter", 3)] {
         browser.press(&tab, key, 0);
-        let start = Instant::now();
         let gains = || kept(&place).iter().filter(|line| line["kind"] == "gain").count();
-        while gains() < lines && start.elapsed() < Duration::from_secs(60) {
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        until("the gain is kept", || gains() >= lines);
         assert_eq!(gains(), lines);
         if lines == 1 {
             // The finger on the pad was felt.
-            let file = place.path("answers/Ann/gain-vinyl.wav");
-            let mut wav = hound::WavReader::open(file).unwrap();
-            assert!(wav.samples::<f32>().any(|x| x.unwrap() != 0.0));
+            let samples = place.samples("answers/Ann/gain-vinyl.wav");
+            assert!(samples.iter().any(|x| *x != 0.0));
         }
         std::thread::sleep(Duration::from_millis(500));
     }
@@ -195,10 +187,7 @@ fn levels(place: &Place, kind: &str) -> Vec<f64> {
 
 /// Waits until the last gain is this one and the page asks for the next key.
 fn gain_is(place: &Place, expected: &[f64]) {
-    let start = Instant::now();
-    while gains(place) != expected && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    until(&format!("gains {expected:?}"), || gains(place) == expected);
     // A second answer would be there by then, and the next key is not the second press of this one.
     std::thread::sleep(Duration::from_millis(600));
     assert_eq!(gains(place), expected);

@@ -1,12 +1,11 @@
 //! `htex build` and `htex lib` with files of an S3-compatible server on loopback.
 
 use std::fs;
-use std::process::{Command, Output};
 use std::time::{Duration, SystemTime};
 
 use crate::browser::Browser;
-use crate::common::Place;
-use htex_object_server::{ACCESS_KEY, Fault, SECRET_KEY, Server};
+use crate::storage::Bench;
+use htex_object_server::Fault;
 use serde_json::{Value, json};
 
 /// The part of a recipe before its recordings.
@@ -22,65 +21,35 @@ at = { speed_mm_s = 80, force_n = 0.4 }
 const NAMES: [&str; 3] = ["vinyl_1", "vinyl_2", "sandpaper_1"];
 
 /// Three recordings here and on a server, with a recipe each.
-struct Bench {
-    server: Server,
-    place: Place,
+fn bench() -> Bench {
+    let bench = Bench::empty();
+    let Bench { server, place } = &bench;
+    fs::create_dir(place.path("rec")).unwrap();
+    for name in NAMES {
+        let (surface, take) = name.split_once('_').unwrap();
+        let file = format!("rec/{name}.csv");
+        place.simulated(&file, &["--surface", surface, "--seed", take, "--seconds", "2"]);
+        let name = format!("lab/{file}");
+        server.put(&name, fs::read(place.path(&file)).unwrap());
+        // This server has no entity tags in lists; a time that has just been set may stay after
+        // another change.
+        let there = fs::File::options().write(true).open(server.path(&name)).unwrap();
+        there.set_modified(SystemTime::now() - Duration::from_secs(60)).unwrap();
+    }
+    let relative = format!("{LIBRARY}recordings = \"rec/*.csv\"{SETTINGS}");
+    server.put("lab/library.toml", &relative);
+    server.put("shop/other", "of somebody else");
+    place.write("library.toml", relative);
+    let away = format!("{LIBRARY}recordings = \"s3://lab/rec/*.csv\"{SETTINGS}");
+    place.write("away.toml", away);
+    bench
 }
 
 impl Bench {
-    fn new() -> Self {
-        let (server, place) = (Server::start(), Place::new());
-        fs::create_dir(place.path("rec")).unwrap();
-        fs::create_dir(place.path("tmp")).unwrap();
-        for name in NAMES {
-            let (surface, take) = name.split_once('_').unwrap();
-            let file = format!("rec/{name}.csv");
-            place.simulated(&file, &["--surface", surface, "--seed", take, "--seconds", "2"]);
-            let name = format!("lab/{file}");
-            server.put(&name, fs::read(place.path(&file)).unwrap());
-            // This server has no entity tags in lists; a time that has just been set may stay after
-            // another change.
-            let there = fs::File::options().write(true).open(server.path(&name)).unwrap();
-            there.set_modified(SystemTime::now() - Duration::from_secs(60)).unwrap();
-        }
-        let relative = format!("{LIBRARY}recordings = \"rec/*.csv\"{SETTINGS}");
-        server.put("lab/library.toml", &relative);
-        server.put("shop/other", "of somebody else");
-        place.write("library.toml", relative);
-        let away = format!("{LIBRARY}recordings = \"s3://lab/rec/*.csv\"{SETTINGS}");
-        place.write("away.toml", away);
-        Self { server, place }
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = self.place.command(arguments);
-        for (name, _) in std::env::vars().filter(|(name, _)| name.starts_with("AWS_")) {
-            command.env_remove(name);
-        }
-        command.envs(self.server.variables());
-        command.env("TMPDIR", self.place.path("tmp"));
-        command.env("XDG_CACHE_HOME", self.place.path("cache"));
-        command.env("NO_PROXY", "127.0.0.1");
-        command
-    }
-
-    /// Runs, and looks for secrets and for files that are left.
-    fn run(&self, arguments: &[&str]) -> Output {
-        let output = self.command(arguments).output().unwrap();
-        for text in [&output.stdout, &output.stderr] {
-            let text = String::from_utf8_lossy(text);
-            for secret in [SECRET_KEY, ACCESS_KEY, "Signature="] {
-                assert!(!text.contains(secret), "{text}");
-            }
-        }
-        assert!(crate::common::entries(&self.place.path("tmp")).is_empty());
-        output
-    }
-
     fn json(&self, arguments: &[&str]) -> Value {
-        let output = self.run(&[arguments, &["--json"]].concat());
-        assert!(output.status.success(), "{}", said(&output));
-        serde_json::from_slice(&output.stdout).unwrap()
+        let run = self.run(&[arguments, &["--json"]].concat());
+        assert_eq!(run.code(), 0, "{}", run.error());
+        serde_json::from_str(&run.text()).unwrap()
     }
 
     fn requests(&self, arguments: &[&str]) -> Vec<String> {
@@ -92,14 +61,10 @@ impl Bench {
     }
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
 /// Recipe, recordings and results, each of them here or there: the same bytes.
 #[test]
 fn where_files_are_changes_no_byte() {
-    let bench = Bench::new();
+    let bench = bench();
     let here = bench.json(&["build", "library.toml", "-o", "dist"]);
     assert_eq!(here["fitted"], 3);
     bench.server.fail(|n, _| match n {
@@ -128,7 +93,7 @@ fn where_files_are_changes_no_byte() {
     assert_eq!(listed.as_array().unwrap().len(), 3);
     let cat = ["lib", "cat", "s3://shop/vinyls/surfaces.htexlib", "vinyl/1"];
     let texture = bench.run(&[&cat[..], &["-o", "s3://shop/one.htex"]].concat());
-    assert!(texture.status.success(), "{}", said(&texture));
+    assert_eq!(texture.code(), 0, "{}", texture.error());
     let one = fs::read(bench.place.path("dist/textures/vinyl/1.htex")).unwrap();
     assert!(bench.server.get("shop/one.htex").unwrap() == one);
 }
@@ -137,7 +102,7 @@ fn where_files_are_changes_no_byte() {
 /// results.
 #[test]
 fn a_second_build_reads_and_writes_what_changed() {
-    let bench = Bench::new();
+    let bench = bench();
     let build = ["build", "away.toml", "-o", "s3://shop/vinyls", "--work", "w"];
     let first = bench.requests(&build);
     let gets = first.iter().filter(|line| line.contains("GET /lab/rec/"));
@@ -161,12 +126,9 @@ fn a_second_build_reads_and_writes_what_changed() {
 /// Errors name the file; a result that could not be written is there after the next run.
 #[test]
 fn errors_name_uris() {
-    let bench = Bench::new();
+    let bench = bench();
     bench.server.put("lab/rec/vinyl_2.csv", "time,lateral\n0,x\n");
-    let damaged = bench.run(&["build", "away.toml", "-o", "dist"]);
-    let text = said(&damaged);
-    assert_eq!(damaged.status.code(), Some(1), "{text}");
-    assert!(text.contains("vinyl/2: vinyl_2.csv, line 2"), "{text}");
+    bench.run(&["build", "away.toml", "-o", "dist"]).failed(1, &["vinyl/2: vinyl_2.csv, line 2"]);
     for (recordings, words) in [
         ("s3://lab/none/*.csv", "no file matches *.csv in s3://lab/none"),
         ("s3://lab/none.csv", "s3://lab/none.csv"),
@@ -175,10 +137,7 @@ fn errors_name_uris() {
     ] {
         let recipe = format!("{LIBRARY}recordings = \"{recordings}\"\nname = \"a\"");
         bench.place.write("wrong.toml", recipe);
-        let wrong = bench.run(&["build", "wrong.toml", "-o", "wrong"]);
-        let text = said(&wrong);
-        assert_eq!(wrong.status.code(), Some(1), "{text}");
-        assert!(text.contains(words), "{text}");
+        bench.run(&["build", "wrong.toml", "-o", "wrong"]).failed(1, &[words]);
     }
     bench.server.fail(|_, seen| match seen.method.as_str() {
         "PUT" if seen.path.contains("htexlib") => Fault::Status(403, "AccessDenied"),
@@ -188,9 +147,7 @@ fn errors_name_uris() {
         .place
         .write("one.toml", format!("{LIBRARY}recordings = \"s3://lab/rec/vinyl_1.csv\"{SETTINGS}"));
     let build = ["build", "one.toml", "-o", "s3://shop/one", "--work", "w"];
-    let refused = bench.run(&build);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(said(&refused).contains("s3://shop/one/surfaces.htexlib"), "{}", said(&refused));
+    bench.run(&build).failed(1, &["s3://shop/one/surfaces.htexlib"]);
     assert!(bench.server.get("shop/one/index.html").is_none());
     bench.server.fail(|_, _| Fault::None);
     assert_eq!(bench.json(&build)["fitted"], 0);
@@ -200,17 +157,15 @@ fn errors_name_uris() {
 /// A bucket that cannot be written is found out before anything is fitted, and the report says so.
 #[test]
 fn a_bucket_is_tried_before_anything_is_fitted() {
-    let bench = Bench::new();
+    let bench = bench();
     let to = "s3://shop/vinyls";
     let build = ["build", "away.toml", "-o", to, "--work", "w"];
     bench.server.fail(|_, seen| match seen.method.as_str() {
         "PUT" => Fault::Status(403, "AccessDenied"),
         _ => Fault::None,
     });
-    let refused = bench.run(&build);
-    assert_eq!(refused.status.code(), Some(1));
     let words = "s3://shop/vinyls/.htex-build-tries: the server refuses access";
-    assert!(said(&refused).contains(words), "{}", said(&refused));
+    bench.run(&build).failed(1, &[words]);
     let requests = bench.server.requests();
     assert_eq!(requests.iter().filter(|seen| seen.method == "PUT").count(), 1);
     let made = crate::common::entries(&bench.place.path("w/.htex-build/made"));
@@ -232,7 +187,7 @@ fn a_catalogue_opens_from_a_store() {
     if !xtask::needs::CHROMIUM.met(installed.is_some()) {
         return;
     }
-    let bench = Bench::new();
+    let bench = bench();
     bench.json(&["build", "away.toml", "-o", "s3://web/vinyls"]);
     bench.server.fail(|_, _| Fault::None);
     let mut browser = Browser::start(installed.unwrap(), &bench.place.path("browser"));

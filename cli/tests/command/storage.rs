@@ -1,22 +1,28 @@
 //! Inputs and outputs by URI: the command against an S3-compatible server on loopback, with faults.
 
-use std::process::{Command, Output};
+use std::process::Command;
 
-use crate::common::{Place, entries, signal, until, words};
+use crate::common::{Place, Run, entries, signal, until, words};
 use htex_object_server::{ACCESS_KEY, Fault, SECRET_KEY, Server};
 use serde_json::json;
 
 /// A server, a folder to work in, and a folder for temporary files.
-struct Bench {
-    server: Server,
-    place: Place,
+pub struct Bench {
+    pub server: Server,
+    pub place: Place,
 }
 
 impl Bench {
-    /// With a recording here and there, and an asset there.
-    fn new() -> Self {
+    /// With nothing anywhere.
+    pub fn empty() -> Self {
         let (server, place) = (Server::start(), Place::new());
         std::fs::create_dir(place.path("tmp")).unwrap();
+        Self { server, place }
+    }
+
+    /// With a recording here and there, and an asset there.
+    fn new() -> Self {
+        let Self { server, place } = Self::empty();
         let recording = std::fs::read(place.path(&place.recording("vinyl"))).unwrap();
         server.put("surfaces/vinyl.csv", &recording);
         server.put("web/vinyl.csv", &recording);
@@ -24,23 +30,27 @@ impl Bench {
         Self { server, place }
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = self.place.command(arguments);
         for (name, _) in std::env::vars().filter(|(name, _)| name.starts_with("AWS_")) {
             command.env_remove(name);
         }
         command.envs(self.server.variables());
         command.env("TMPDIR", self.place.path("tmp")).env("NO_PROXY", "127.0.0.1");
+        command.env("XDG_CACHE_HOME", self.place.path("cache"));
         command
     }
 
     /// Runs, and looks for secrets and copies that are left.
-    fn run(&self, arguments: &[&str]) -> Done {
-        self.finish(self.command(arguments))
+    pub fn run(&self, arguments: &[&str]) -> Run {
+        let before = self.copies();
+        let done = self.finish(self.command(arguments));
+        assert_eq!(self.copies(), before);
+        done
     }
 
-    fn finish(&self, mut command: Command) -> Done {
-        let done = Done(command.output().unwrap());
+    fn finish(&self, mut command: Command) -> Run {
+        let done = Run::of(command.output().unwrap());
         for text in [done.text(), done.error()] {
             for secret in [SECRET_KEY, ACCESS_KEY, "AWS4-HMAC", "S3CR3T", "Signature="] {
                 assert!(!text.contains(secret), "{text}");
@@ -51,31 +61,6 @@ impl Bench {
 
     fn copies(&self) -> Vec<String> {
         entries(&self.place.path("tmp"))
-    }
-}
-
-struct Done(Output);
-
-impl Done {
-    fn code(&self) -> i32 {
-        self.0.status.code().unwrap()
-    }
-
-    fn text(&self) -> String {
-        String::from_utf8_lossy(&self.0.stdout).into_owned()
-    }
-
-    fn error(&self) -> String {
-        String::from_utf8_lossy(&self.0.stderr).into_owned()
-    }
-
-    /// Exit status, and one sentence with these words.
-    fn failed(&self, code: i32, words: &[&str]) {
-        let error = self.error();
-        assert_eq!(self.code(), code, "{error}");
-        for word in words {
-            assert!(error.contains(word), "{word}: {error}");
-        }
     }
 }
 
@@ -139,7 +124,6 @@ fn files_elsewhere_are_those_here() {
         server.get("surfaces/vinyl.wav").unwrap(),
         std::fs::read(place.path("vinyl.wav")).unwrap()
     );
-    assert!(bench.copies().is_empty());
 }
 
 /// A scene is here, and what is rendered of it goes elsewhere.
@@ -157,7 +141,6 @@ fn a_scene_is_rendered_to_a_file_elsewhere() {
         bench.server.get("surfaces/s.wav").unwrap(),
         std::fs::read(bench.place.path("s.wav")).unwrap()
     );
-    assert!(bench.copies().is_empty());
     bench.run(&["render", "s3://surfaces/s.scene.json"]).failed(1, &["no such file"]);
     bench
         .server
@@ -205,8 +188,8 @@ fn a_result_that_cannot_be_written_is_kept() {
     bench.server.fail(|_, request| {
         if request.method == "PUT" { Fault::Status(403, "AccessDenied") } else { Fault::None }
     });
-    let done =
-        bench.run(&words("fit s3://surfaces/vinyl.csv --model bands -o s3://surfaces/new.htex"));
+    let fit = words("fit s3://surfaces/vinyl.csv --model bands -o s3://surfaces/new.htex");
+    let done = bench.finish(bench.command(&fit));
     done.failed(
         1,
         &["s3://surfaces/new.htex: the server refuses access", "the result is kept in "],

@@ -138,6 +138,15 @@ impl Run {
     pub fn text(&self) -> String {
         String::from_utf8(self.0.stdout.clone()).unwrap()
     }
+
+    /// Exit status, and one sentence with these words.
+    pub fn failed(&self, code: i32, words: &[&str]) {
+        let error = self.error();
+        assert_eq!(self.code(), code, "{error}");
+        for word in words {
+            assert!(error.contains(word), "{word}: {error}");
+        }
+    }
 }
 
 pub fn rms(samples: &[f32]) -> f64 {

@@ -1,16 +1,14 @@
 //! Recipes, tables and folders of results that come from somebody else.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
-use std::net::TcpListener;
+use std::io::Write;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::common::{Place, Run, words};
+use htex_object_server::{Fault, Server};
 use serde_json::Value;
 
 const RECIPE: &str = r#"
@@ -55,35 +53,6 @@ fn bounded(place: &Place, arguments: &[&str]) -> Run {
 
 fn pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
-}
-
-/// A server of this machine that counts its requests; the first line of each is answered by
-/// `answer`.
-fn server(answer: impl Fn(&str) -> String + Send + 'static) -> (String, Arc<AtomicUsize>) {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let url = format!("http://{}", listener.local_addr().unwrap());
-    let requests = Arc::new(AtomicUsize::new(0));
-    let counted = requests.clone();
-    std::thread::spawn(move || {
-        for stream in listener.incoming() {
-            let Ok(mut stream) = stream else { return };
-            counted.fetch_add(1, Ordering::SeqCst);
-            let mut lines = BufReader::new(stream.try_clone().unwrap()).lines();
-            let first = lines.next().and_then(Result::ok).unwrap_or_default();
-            let referer = lines
-                .map_while(Result::ok)
-                .take_while(|line| !line.is_empty())
-                .find(|line| line.to_ascii_lowercase().starts_with("referer"));
-            assert_eq!(referer, None);
-            let _ = stream.write_all(answer(&first).as_bytes());
-        }
-    });
-    (url, requests)
-}
-
-fn ok(body: &str) -> String {
-    let length = body.len();
-    format!("HTTP/1.1 200 OK\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n{body}")
 }
 
 /// A native library that writes a file when it is loaded.
@@ -138,9 +107,10 @@ fn a_recipe_runs_no_native_code() {
     }
     // The same for a recipe from a server, and a library named relative to it.
     let bytes = RECIPE.replace("\"surfaces\"", "\"surfaces\"\nplugins = [\"m.so\"]");
-    let (url, _) =
-        server(move |request| if request.contains(".toml") { ok(&bytes) } else { ok("\u{7f}ELF") });
-    let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
+    let server = Server::start();
+    server.put("web/library.toml", bytes);
+    server.put("web/m.so", "\u{7f}ELF");
+    let run = place.run(&["build", &format!("{}/web/library.toml", server.url()), "-o", "dist"]);
     assert!(run.code() == 1 && !place.path("loaded").exists(), "{}", run.error());
     // If the user names the library, it is loaded. It is no model, and the error says so.
     place.write("library.toml", RECIPE);
@@ -273,7 +243,8 @@ fn only_own_entries_are_removed() {
 #[test]
 fn a_recipe_names_no_inner_address() {
     let place = place();
-    let (url, requests) = server(|_| ok("x"));
+    let server = Server::start();
+    let url = server.url();
     let port = url.rsplit(':').next().unwrap();
     let hosts = [
         "localhost",
@@ -302,12 +273,10 @@ fn a_recipe_names_no_inner_address() {
         assert_eq!(run.code(), 1, "{key} {uri}");
         assert!(run.error().contains("machine or network"), "{key} {uri}: {}", run.error());
     }
-    assert_eq!(requests.load(Ordering::SeqCst), 0);
-    let own = RECIPE.replace("rec/*.csv", "rec/a.csv");
-    let csv = fs::read_to_string(place.path("rec/a.csv")).unwrap();
-    let (url, _) =
-        server(move |request| if request.contains(".toml") { ok(&own) } else { ok(&csv) });
-    let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
+    assert!(server.requests().is_empty());
+    server.put("web/library.toml", RECIPE.replace("rec/*.csv", "rec/a.csv"));
+    server.put("web/rec/a.csv", fs::read(place.path("rec/a.csv")).unwrap());
+    let run = place.run(&["build", &format!("{url}/web/library.toml"), "-o", "dist"]);
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
@@ -317,18 +286,14 @@ fn a_recipe_names_no_inner_address() {
 #[test]
 fn a_redirect_by_name_leads_nowhere_inside() {
     let place = place();
-    let (inner, requests) = server(|_| ok("x"));
-    let inner = inner.replace("127.0.0.1", "localhost");
-    let to = format!("{inner}/a.csv");
-    let (url, _) = server(move |_| {
-        format!(
-            "HTTP/1.1 302 Found\r\nLocation: {to}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
-        )
-    });
-    let run = place.run(&["process", &format!("{url}/a.csv?sig=S3CR3T")]);
+    let (inner, server) = (Server::start(), Server::start());
+    let to = format!("{}/web/a.csv", inner.url().replace("127.0.0.1", "localhost"));
+    server.fail(move |_, _| Fault::Redirect(to.clone()));
+    let run = place.run(&["process", &format!("{}/web/a.csv?sig=S3CR3T", server.url())]);
     assert_eq!(run.code(), 1);
     assert!(run.error().contains("machine or network"), "{}", run.error());
-    assert_eq!(requests.load(Ordering::SeqCst), 0);
+    assert!(inner.requests().is_empty());
+    assert!(server.requests().iter().all(|seen| seen.referer.is_none()));
 }
 
 /// Whatever a recipe or a table names, a build ends soon and takes little memory.

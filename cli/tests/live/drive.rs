@@ -65,7 +65,7 @@ fn what_cannot_be_played_never_touches_the_card() {
     high.fails(&mut high.command(&["play"]), &words);
     // Nor does a scene without what makes its newtons volts, brings these from zero and back, and
     // holds them at the drive.
-    for effect in ["square_root", "contact", "limiter"] {
+    for effect in ["square_root", "contact", "limiter", "carrier"] {
         let raw = Bench::new(json!({ "duration_s": 1, "effects": { effect: "off" } }));
         raw.fails(&mut raw.command(&["play"]), &[&format!("`{effect}` is off")]);
         assert!(!raw.0.path(RECORD).exists());

@@ -35,13 +35,6 @@ fn a_rate_that_takes_the_carrier_away_is_refused() {
     assert!(!bench.0.path(RECORD).exists());
 }
 
-#[test]
-fn an_effect_takes_no_carrier_away() {
-    let bench = Bench::new(json!({ "duration_s": 1, "effects": { "carrier": "off" } }));
-    bench.fails(&mut bench.command(&["play"]), &["`carrier` is off"]);
-    assert!(!bench.0.path(RECORD).exists());
-}
-
 /// A file's settings of carrier and direct voltage are not used, whatever they say.
 #[test]
 fn a_setting_takes_no_carrier_away() {
@@ -172,16 +165,4 @@ fn started(bench: &Bench, play: &mut Command) -> Option<Child> {
         std::thread::sleep(Duration::from_millis(20));
     }
     None
-}
-
-/// Buffer and ramp together last at most 0.4 s, even if the user sets them.
-#[test]
-fn buffer_and_ramp_are_bounded_together() {
-    let bench = scene(json!({}));
-    for set in [
-        ["--set", "buffer_ms=390", "--set", "ramp_ms=20"],
-        ["--set", "buffer_ms=200", "--set", "ramp_ms=250"],
-    ] {
-        bench.fails(bench.command(&["play"]).args(set), &["400 ms together"]);
-    }
 }

@@ -193,8 +193,10 @@ fn what_endangers_a_finger_is_refused() {
         assert!(card.recorded().is_empty());
     }
     let card = Card::new();
-    let error = card.open(&[("buffer_ms", "390"), ("ramp_ms", "20")]);
-    assert!(error.err().unwrap().to_string().contains("at most 400 ms together"));
+    for (buffer_ms, ramp_ms) in [("390", "20"), ("200", "250")] {
+        let error = card.open(&[("buffer_ms", buffer_ms), ("ramp_ms", ramp_ms)]);
+        assert!(error.err().unwrap().to_string().contains("at most 400 ms together"));
+    }
     let fast = Daq.capabilities(&card.settings(&[("carrier_hz", "100000")]));
     let Rates::Range { min_hz, .. } = fast.unwrap().rates else { unreachable!() };
     assert_eq!(min_hz, 250_000.0);

@@ -163,26 +163,10 @@ fn recordings_are_compared_with_each_other() {
 #[test]
 fn what_is_no_recording_is_refused_with_file_and_line() {
     let place = Place::new();
-    let good = "t_s,fx_n,fz_n\n0.0000,0.1,0.4\n0.0005,0.2,0.4\n0.0010,0.1,0.4\n";
-    let slow: String = (0..400).map(|n| format!("{},{}\n", f64::from(n) / 36.0, n % 7)).collect();
-    let cases: [(&str, Vec<u8>, &[&str]); 7] = [
-        ("empty.csv", vec![], &["empty.csv"]),
-        ("one-row.csv", b"t_s,fx_n\n0.0,0.1\n".to_vec(), &["one-row.csv"]),
-        ("nan.csv", good.replace("0.2", "NaN").into(), &["nan.csv", "line 3", "fx_n"]),
-        ("cut.csv", good[..good.len() - 5].into(), &["cut.csv", "line 4"]),
-        ("binary.csv", vec![0, 159, 146, 150, 0, 1, 2, 255], &["binary.csv"]),
-        ("short.csv", good.into(), &["short.csv", "0.2 s"]),
-        ("slow.csv", format!("t_s,friction_n\n{slow}").into(), &["slow.csv", "36", "20"]),
-    ];
-    for (name, bytes, words) in cases {
-        place.write(name, bytes);
-        let run = place.run(&["fit", name, "-o", "out.htex"]);
-        assert_eq!(run.code(), 1, "{name}: {}", run.error());
-        for word in words {
-            assert!(run.error().contains(word), "{name} lacks {word}: {}", run.error());
-        }
-        assert!(!entries(&place.path("")).iter().any(|e| e.contains("htex")), "{name}");
-    }
+    place.write("nan.csv", "t_s,fx_n,fz_n\n0.0000,0.1,0.4\n0.0005,NaN,0.4\n0.0010,0.1,0.4\n");
+    let run = place.run(&["fit", "nan.csv", "-o", "out.htex"]);
+    run.failed(1, &["nan.csv", "line 3", "fx_n"]);
+    assert!(!entries(&place.path("")).iter().any(|e| e.contains("htex")));
 }
 
 #[test]

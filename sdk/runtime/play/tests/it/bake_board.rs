@@ -128,20 +128,6 @@ fn no_panic_is_reachable_on_the_board() {
     assert!(!symbols.contains("panic"), "{symbols}");
 }
 
-#[test]
-fn a_damaged_block_is_an_error_on_the_board() {
-    if !all_met(&[(&BARE_TARGET, has_target()), (&QEMU_ARM, has("qemu-system-arm"))]) {
-        return;
-    }
-    let program = cargo(&player().join("examples/cortex-m4"), Some(TARGET)).join("cortex-m4");
-    let (_, block, _) = blocks("damaged").remove(2);
-    let mut bytes = std::fs::read(&block).unwrap();
-    bytes[100] ^= 1;
-    std::fs::write(&block, bytes).unwrap();
-    let output = on_board(&program, &block);
-    assert!(output.contains("error: the checksum"), "{output}");
-}
-
 /// Returns cases for blocks of all models: motions within and beyond the conditions, a finger at
 /// rest, and implausible motions.
 fn cases() -> Vec<Case> {

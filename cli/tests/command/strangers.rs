@@ -477,18 +477,6 @@ fn json_steers_no_terminal() {
     assert_eq!(json["asset"], name);
 }
 
-/// The mistake in a recipe is named with its file, line and column, without escapes.
-#[test]
-fn a_mistake_in_toml_has_its_place() {
-    let place = place();
-    place.write("library.toml", "[library]\nname = \"a\nmodels");
-    let error = build(&place, &[]).error();
-    assert!(
-        error.contains("library.toml: line 3, column 7: ") && !error.contains("\\n"),
-        "{error}"
-    );
-}
-
 /// Where one asset is meant, a library or a second asset is an error that says what to do.
 #[test]
 fn a_library_in_place_of_an_asset_says_what_to_do() {

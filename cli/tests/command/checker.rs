@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use htex_check::model::{CHECKS, Options, Outcome, Report, Runner, Settings, check, run_one};
@@ -94,27 +95,13 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Cargo's build folder for these tests.
-fn built() -> &'static Path {
-    Path::new(env!("CARGO_BIN_EXE_htex")).parent().unwrap()
-}
-
-/// A model as a native library, built where these tests are built.
-fn library(model: &str) -> PathBuf {
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo
-        .args(["rustc", "--quiet", "--lib", "--features", "plugin"])
-        .args(["--crate-type", "cdylib", "--package"])
-        .arg(format!("htex-{model}"))
-        .arg("--target-dir")
-        .arg(built().parent().unwrap())
-        .current_dir(workspace());
-    if built().ends_with("release") {
-        cargo.arg("--release");
-    }
-    assert!(cargo.status().unwrap().success(), "{model} does not build");
-    let suffix = std::env::consts::DLL_SUFFIX;
-    built().join(format!("libhtex_{model}{suffix}"))
+/// A copy of a model as a native library, without its module beside it.
+fn library(folder: &Path, model: &str) -> PathBuf {
+    static BUILT: LazyLock<PathBuf> = LazyLock::new(|| xtask::plugins::native().unwrap());
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let name = format!("{prefix}htex_{model}{suffix}");
+    std::fs::copy(BUILT.join(&name), folder.join(&name)).unwrap();
+    folder.join(name)
 }
 
 /// Compiles the faulty model with a fault, or without, around a valid library.
@@ -166,8 +153,9 @@ fn check_some(file: &Path, timeout_s: u64, seed: u64, only: Option<Vec<String>>)
 
 #[test]
 fn sound_models_pass() {
+    let folder = tempfile::tempdir().unwrap();
     for model in Registry::builtin_names() {
-        let file = library(model);
+        let file = library(folder.path(), model);
         checked_by_seeds(&file);
         let report = checked(&file, 120);
         println!("{report}");
@@ -202,7 +190,7 @@ fn sound_modules_pass_too() {
 #[test]
 fn each_fault_is_found_by_its_own_check() {
     let folder = tempfile::tempdir().unwrap();
-    let good = library("sbeta");
+    let good = library(folder.path(), "sbeta");
     let sound = checked(&bad(folder.path(), &good, "NONE"), 120);
     assert!(sound.ok, "without a fault: {}", sound);
     for (fault, name, outcome) in FAULTS {
@@ -282,7 +270,7 @@ fn a_file_that_cannot_be_loaded_has_no_marker() {
 #[test]
 fn twins_must_agree() {
     let folder = tempfile::tempdir().unwrap();
-    let good = library("sbeta");
+    let good = library(folder.path(), "sbeta");
     let seeded = bad(folder.path(), &good, "SEED_IGNORED");
     let twin = |other: &Path| {
         let settings = Settings { seed: 3, against: Some(other), fuzz: None };

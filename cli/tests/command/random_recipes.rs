@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::common::Place;
+use crate::common::{Place, Random};
 
 /// Most memory of a build, KiB.
 const MOST_KIB: i64 = 512 << 10;
@@ -20,32 +20,6 @@ const LONGEST: Duration = Duration::from_secs(30);
 /// A recipe without a trap.
 const PLAIN: &str = "[library]\nname = \"lib\"\n[[textures]]\nrecordings = \"rec/*.csv\"\nmodels = [\"bands\"]\n\
                      at = { speed_mm_s = 80, force_n = 0.4 }\n";
-
-/// Numbers by SplitMix64 (Steele, Lea and Flood 2014): the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-
-    /// Whether one of `n` times.
-    fn one_in(&mut self, n: usize) -> bool {
-        self.below(n) == 0
-    }
-
-    fn of<'a, T: ?Sized>(&mut self, all: &[&'a T]) -> &'a T {
-        all[self.below(all.len())]
-    }
-}
 
 /// A folder of somebody else, inside one in which nothing may change.
 struct Traps {

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::volts::{Volts, volts};
 use super::*;
+use crate::common::Random;
 
 /// Scenes and studies in a test, and with `HTEX_WHOLE`.
 const SAMPLE: u64 = 20;
@@ -16,33 +17,8 @@ const LIMIT_V: f64 = 150.0;
 /// Longest time to zero, seconds.
 const MOST_S: f64 = 0.5;
 
-/// Splitmix64.
-struct Dice(u64);
-
-impl Dice {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.bits() % count as u64) as usize
-    }
-
-    fn one<T: Clone>(&mut self, of: &[T]) -> T {
-        of[self.below(of.len())].clone()
-    }
-
-    /// True once in so many times.
-    fn once_in(&mut self, times: usize) -> bool {
-        self.below(times) == 0
-    }
-}
-
 /// Settings of the rig that a file may ask for, with extreme values.
-fn settings(dice: &mut Dice) -> Value {
+fn settings(dice: &mut Random) -> Value {
     let all: [(&str, &[f64]); 8] = [
         ("carrier_hz", &[0.0, 1.0, 20.0, 7_000.0, 10_000.0]),
         ("dc_limit_v", &[0.01, 1.0, 10.0, 1_000.0]),
@@ -55,42 +31,42 @@ fn settings(dice: &mut Dice) -> Value {
     ];
     let mut settings = Map::new();
     for (name, values) in all {
-        if dice.once_in(10) {
-            settings.insert(name.to_owned(), dice.one(values).into());
+        if dice.one_in(10) {
+            settings.insert(name.to_owned(), dice.of(values).into());
         }
     }
     settings.into()
 }
 
-fn device(dice: &mut Dice) -> Value {
+fn device(dice: &mut Random) -> Value {
     let mut device = json!({ "adapter": "daq", "settings": settings(dice) });
-    device["drive_v"] = dice.one(&[1.0, 75.0, 150.0]).into();
-    if dice.once_in(3) {
+    device["drive_v"] = dice.of(&[1.0, 75.0, 150.0]).into();
+    if dice.one_in(3) {
         let rates = [
             100.0, 3_500.0, 7_000.0, 7_001.0, 14_000.0, 17_500.0, 20_000.0, 20_999.0, 21_000.0,
             28_000.0, 35_000.0, 100_000.0,
         ];
-        device["rate_hz"] = dice.one(&rates).into();
+        device["rate_hz"] = dice.of(&rates).into();
     }
-    if dice.once_in(3) {
+    if dice.one_in(3) {
         device["levels"] = "own".into();
-        device["reference_rms"] = dice.one(&[1e-6, 0.003, 0.01, 1.0]).into();
+        device["reference_rms"] = dice.of(&[1e-6, 0.003, 0.01, 1.0]).into();
     }
     device
 }
 
-fn motion(dice: &mut Dice) -> Value {
-    if dice.once_in(4) {
+fn motion(dice: &mut Random) -> Value {
+    if dice.one_in(4) {
         json!({ "trace": "hand.csv" })
     } else {
         json!({ "constant": {
-            "speed_mm_s": dice.one(&[0.0, 5.0, 80.0, 80.0, 300.0, 999.0, 10_000.0]),
-            "force_n": dice.one(&[0.0, 0.4, 0.4, 3.0, 19.0, 1_000.0]),
+            "speed_mm_s": dice.of(&[0.0, 5.0, 80.0, 80.0, 300.0, 999.0, 10_000.0]),
+            "force_n": dice.of(&[0.0, 0.4, 0.4, 3.0, 19.0, 1_000.0]),
         } })
     }
 }
 
-fn effects(dice: &mut Dice) -> Value {
+fn effects(dice: &mut Random) -> Value {
     let all = [
         "carrier",
         "contact",
@@ -107,17 +83,17 @@ fn effects(dice: &mut Dice) -> Value {
     ];
     let mut effects = Map::new();
     for name in all {
-        if dice.once_in(25) {
-            effects.insert(name.to_owned(), dice.one(&["on", "off", "auto"]).into());
+        if dice.one_in(25) {
+            effects.insert(name.to_owned(), dice.of(&["on", "off", "auto"]).into());
         }
     }
     effects.into()
 }
 
-fn scene(dice: &mut Dice) -> Value {
+fn scene(dice: &mut Random) -> Value {
     let surface = json!({
-        "asset": dice.one(&["coarse-fabric.htex", "vinyl.htex"]),
-        "gain": dice.one(&[0.0, 1.0, 1.0, 3.0, 1_000.0]),
+        "asset": dice.of(&["coarse-fabric.htex", "vinyl.htex"]),
+        "gain": dice.of(&[0.0, 1.0, 1.0, 3.0, 1_000.0]),
     });
     json!({ "surfaces": [surface], "device": device(dice), "motion": motion(dice), "effects": effects(dice), "seed": dice.below(1_000) })
 }
@@ -160,18 +136,18 @@ fn rate_of(device: &Value) -> f64 {
 }
 
 /// Plays a scene to its end.
-fn to_its_end(dice: &mut Dice, worst: &mut Worst) {
+fn to_its_end(dice: &mut Random, worst: &mut Worst) {
     let mut what = scene(dice);
-    what["duration_s"] = dice.one(&[0.05, 0.3, 1.0]).into();
+    what["duration_s"] = dice.of(&[0.05, 0.3, 1.0]).into();
     let bench = Bench::new(what.clone());
     ended_soundly(&bench.command(&["play"]).output().unwrap(), &what);
     worst.take(&bench.card_v(), rate_of(&what["device"]), &what);
 }
 
 /// Plays a scene in real time, and ends the player.
-fn interrupted(dice: &mut Dice, worst: &mut Worst) {
+fn interrupted(dice: &mut Random, worst: &mut Worst) {
     let what = scene(dice);
-    let (bench, name) = (Bench::new(what.clone()), dice.one(&["-INT", "-TERM", "-KILL"]));
+    let (bench, name) = (Bench::new(what.clone()), dice.of(&["-INT", "-TERM", "-KILL"]));
     let mut play = bench.command(&["play"]);
     play.stderr(Stdio::null()).stdout(Stdio::null());
     let begun = Instant::now();
@@ -211,7 +187,7 @@ fn toml(value: &Value) -> String {
 }
 
 /// Runs a study of a simulated participant.
-fn studied(dice: &mut Dice, worst: &mut Worst) {
+fn studied(dice: &mut Random, worst: &mut Worst) {
     let what = device(dice);
     let place = crate::studies::short(&[
         ("device = { adapter = 'file' }", &format!("device = {}", toml(&what))),
@@ -231,7 +207,7 @@ fn no_scene_and_no_study_harms_a_finger() {
     let count = if xtask::prove::whole() { WHOLE } else { SAMPLE };
     let mut worst = Worst::default();
     for seed in 0..count {
-        let mut dice = Dice(seed);
+        let mut dice = Random(seed);
         match seed % 4 {
             0 => studied(&mut dice, &mut worst),
             1 => interrupted(&mut dice, &mut worst),

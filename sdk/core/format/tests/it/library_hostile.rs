@@ -3,6 +3,7 @@
 //! This file has only one test, so that the peak memory of the process belongs to that test.
 
 use crate::library_common as common;
+use crate::mutations::Random;
 
 use std::time::{Duration, Instant};
 
@@ -10,50 +11,11 @@ use common::cases::{cases, sharing};
 use common::raw::Raw;
 use common::{pack, texture};
 use htex_format::library::{Library, Limits, validate_source};
-use rand_core::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 const FILES: usize = 100_000;
 const MOST_MIB: u64 = 256;
 
-struct Random(Xoshiro256PlusPlus);
-
 impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        (self.0.next_u64() % n.max(1) as u64) as usize
-    }
-
-    fn byte(&mut self) -> u8 {
-        let telling = [0, 1, 0x7f, 0x80, 0xff, b'/', b'.', b'P'];
-        match self.below(2) {
-            0 => telling[self.below(telling.len())],
-            _ => self.below(256) as u8,
-        }
-    }
-
-    fn mutate(&mut self, bytes: &mut Vec<u8>, other: &[u8]) {
-        let at = self.below(bytes.len());
-        match self.below(6) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << self.below(8),
-            1 if at < bytes.len() => bytes[at] = self.byte(),
-            2 => bytes.truncate(at),
-            3 => bytes.insert(at, self.byte()),
-            // A huge integer in place of a small one.
-            4 => {
-                let end = (at + 1).min(bytes.len());
-                let length = self.below(10);
-                let huge = std::iter::repeat_n(0xff, length).chain([1]);
-                bytes.splice(at..end, huge);
-            }
-            _ => {
-                let from = self.below(other.len());
-                let to = (from + self.below(64)).min(other.len());
-                let end = (at + self.below(64)).min(bytes.len());
-                bytes.splice(at..end, other[from..to].iter().copied());
-            }
-        }
-    }
-
     /// A file with changed bytes anywhere.
     fn file(&mut self, whole: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = whole[self.below(whole.len())].clone();
@@ -75,7 +37,7 @@ impl Random {
 #[test]
 fn no_mutation_makes_reading_panic_hang_or_take_memory() {
     let limits = Limits::default();
-    let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(0x6874_6578));
+    let mut random = Random::new(b"\0\x01\x7F\x80\xFF/.P");
     let mut whole: Vec<Vec<u8>> = cases().into_iter().map(|case| case.bytes).collect();
     whole.push(pack("Shared", &sharing()).1);
     let raw = Raw::of(&["a", "b/c"].map(texture), 1);

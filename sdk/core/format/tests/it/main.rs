@@ -24,6 +24,7 @@ mod library_round_trip;
 mod library_specification;
 mod limits;
 mod measures;
+mod mutations;
 mod round_trip;
 mod size;
 mod specification;

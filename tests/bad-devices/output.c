@@ -4,33 +4,7 @@
  * for what one -DFAULT_… changes. Only the check of this fault must fail; the
  * table of faults and checks stands in cli/tests/live/device.rs.
  */
-#include <dlfcn.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "htex_device.h"
-
-static const htex_device_table *good(void) {
-    static void *library;
-    if (!library) library = dlopen(GOOD_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    void *symbol = library ? dlsym(library, "htex_device_adapter") : NULL;
-    if (!symbol) abort();
-    return ((const htex_device_table *(*)(void))symbol)();
-}
-
-/* Where a leak points last, so that a compiler does not leave it out. */
-static void *volatile kept;
-
-#if defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_PROFILE || defined FAULT_DESCRIPTOR_JSON || \
-    defined FAULT_VOLTAGE || defined FAULT_CAPABILITIES || defined FAULT_ENDPOINTS
-static int64_t give(const char *text, uint8_t *out, size_t capacity) {
-    size_t len = strlen(text);
-    if (capacity && !out) return -1; /* invalid argument */
-    if (capacity) memcpy(out, text, capacity < len ? capacity : len);
-    return (int64_t)len;
-}
-#endif
+#include "bad.h"
 
 static int64_t bad_descriptor(uint8_t *out, size_t capacity) {
 #define BAD(default_value, profile)                                                              \
@@ -47,23 +21,6 @@ static int64_t bad_descriptor(uint8_t *out, size_t capacity) {
     return give(BAD("1", "\"b\":\"1\""), out, capacity);
 #else
     return good()->descriptor(out, capacity);
-#endif
-}
-
-static int64_t bad_last_error(uint8_t *out, size_t capacity) {
-#ifdef FAULT_SETTING_UNNAMED
-    static const char text[] = "one of the settings is not usable";
-    for (size_t i = 0; out && i < sizeof text - 1 && i < capacity; i++) out[i] = (uint8_t)text[i];
-    if (out || !capacity) return sizeof text - 1;
-#endif
-    return good()->last_error(out, capacity);
-}
-
-static int64_t bad_endpoints(uint8_t *out, size_t capacity) {
-#ifdef FAULT_ENDPOINTS
-    return give("[{\"name\":\"a\",\"setting\":\"no_such\",\"summary\":\"A.\"}]", out, capacity);
-#else
-    return good()->endpoints(out, capacity);
 #endif
 }
 
@@ -106,8 +63,6 @@ static int64_t bad_capabilities(const uint8_t *settings, size_t settings_len, ui
     return answer;
 #endif
 }
-
-static int64_t opened;
 
 static int64_t bad_open(const uint8_t *settings, size_t settings_len, double rate_hz,
                          uint32_t block_frames) {
@@ -215,31 +170,9 @@ static int64_t bad_close(int64_t device) {
     return answer;
 }
 
-static int64_t bad_extension(const uint8_t *id, size_t id_len) {
-#ifdef FAULT_EXTENSIONS
-    return 1;
-#else
-    return good()->extension(id, id_len);
-#endif
-}
-
 const htex_device_table *htex_device_adapter(void) {
     static htex_device_table table = {
-#ifdef FAULT_MARKER
-        .marker = 0x48540100, /* a model's */
-#else
-        .marker = HTEX_DEVICE_ABI_MARKER,
-#endif
-        .size = sizeof(htex_device_table),
-        .descriptor = bad_descriptor,
-        .last_error = bad_last_error,
-        .endpoints = bad_endpoints,
-        .open = bad_open,
-#ifndef FAULT_EXPORT_MISSING
-        .finish = bad_finish,
-#endif
-        .close = bad_close,
-        .extension = bad_extension,
+        BOTH,
         .capabilities = bad_capabilities,
         .write = bad_write,
         .status = bad_status,

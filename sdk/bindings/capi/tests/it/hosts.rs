@@ -15,7 +15,7 @@ use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, embed_plugins, fit_asset};
 use htex::model::Search;
 use htex::{Motion, Registry, Texture, VoiceOptions};
-use programs::{Language, Project, asset};
+use programs::{Language, Project, asset, clean};
 use xtask::needs;
 
 fn hosts(file: &str) -> PathBuf {
@@ -48,32 +48,12 @@ fn real_time_calls_do_not_allocate() {
 
 #[test]
 fn the_library_is_clean_under_valgrind_and_sanitizers() {
-    let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
-    let project = Project::new(Language::C, "real_time_valgrind");
-    if let Some(project) = project.filter(|_| needs::VALGRIND.met(valgrind)) {
-        let program = build(&project, "real_time.c", &[]);
-        let under = [
-            "valgrind",
-            "--quiet",
-            "--error-exitcode=9",
-            "--leak-check=full",
-            "--errors-for-leak-kinds=definite,indirect,possible",
-        ];
-        let asset = all_models(&project);
+    clean("real_time", "definite,indirect,possible", |project, under, flags| {
+        let program = build(project, "real_time.c", flags);
+        let asset = all_models(project);
         let arguments = [asset.as_os_str(), "1500".as_ref()];
-        passed("valgrind", &project.run_under(&under, &program, &arguments));
-    }
-    let flags = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-    for language in [Language::C, Language::Clang] {
-        let project = Project::new(language, "real_time_sanitized");
-        let met = |project: &Project| needs::SANITIZERS.met(project.builds(&flags));
-        if let Some(project) = project.filter(met) {
-            let program = build(&project, "real_time.c", &flags);
-            let asset = all_models(&project);
-            let arguments = [asset.as_os_str(), "1500".as_ref()];
-            passed("sanitizers", &project.run(&program, &arguments));
-        }
-    }
+        passed("clean", &project.run_under(under, &program, &arguments));
+    });
 }
 
 /// The first voice of a model takes at most 64 kB more than the next ones, and shutting down the

@@ -4,10 +4,9 @@ use crate::common::programs;
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use htex::{Motion, Texture, VoiceOptions};
-use programs::{Language, Project, asset};
+use programs::{Language, Project, asset, clean};
 use xtask::needs;
 
 /// The samples of the examples' stroke.
@@ -201,31 +200,11 @@ fn modules_reach_the_library_from_csharp() {
 #[test]
 fn the_example_has_no_memory_errors() {
     let source = fs::read_to_string(Language::C.example()).unwrap();
-    let run = |project: &Project, under: &[&str], more: &[&str]| {
+    clean("example", "definite", |project, under, more| {
         let program = project.build_with(&source, more);
         let out = project.folder().join("stroke.f32");
         let run = project.run_under(under, &program, &[asset().as_os_str(), out.as_os_str()]);
         assert!(run.status.success(), "{under:?} {more:?}: {run:?}");
         assert!(fs::read(&out).unwrap() == stroke(&asset()), "{under:?} {more:?}");
-    };
-    let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
-    if needs::VALGRIND.met(valgrind) {
-        let under = [
-            "valgrind",
-            "--quiet",
-            "--error-exitcode=9",
-            "--leak-check=full",
-            "--errors-for-leak-kinds=definite",
-        ];
-        run(&Project::new(Language::C, "valgrind").unwrap(), &under, &[]);
-    }
-    let flags = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-    for language in [Language::C, Language::Clang] {
-        let project = Project::new(language, "sanitized");
-        if let Some(project) =
-            project.filter(|project| needs::SANITIZERS.met(project.builds(&flags)))
-        {
-            run(&project, &[], &flags);
-        }
-    }
+    });
 }

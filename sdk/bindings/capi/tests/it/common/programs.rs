@@ -195,3 +195,23 @@ fn library() -> PathBuf {
     let built = tests.parent().unwrap();
     built.join("libhtex_c.so")
 }
+
+/// Builds and runs a program in C under valgrind, and with the sanitizers of gcc and clang: `run`
+/// is given a project, what to run the program under, and flags of the compiler.
+pub fn clean(name: &str, leaks: &str, run: impl Fn(&Project, &[&str], &[&str])) {
+    let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
+    let project = Project::new(Language::C, &format!("{name}_valgrind"));
+    if let Some(project) = project.filter(|_| needs::VALGRIND.met(valgrind)) {
+        let leaks = format!("--errors-for-leak-kinds={leaks}");
+        let under = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", &leaks];
+        run(&project, &under, &[]);
+    }
+    let flags = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+    for language in [Language::C, Language::Clang] {
+        let project = Project::new(language, &format!("{name}_sanitized"));
+        let met = |project: &Project| needs::SANITIZERS.met(project.builds(&flags));
+        if let Some(project) = project.filter(met) {
+            run(&project, &[], &flags);
+        }
+    }
+}

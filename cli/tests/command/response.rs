@@ -1,38 +1,19 @@
 //! `htex response`: hits of a simulated rig become the response that other commands divide by.
 
-use std::f64::consts::{PI, TAU};
+#[path = "../../../sdk/lab/tests/it/rig.rs"]
+mod simulated;
+
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use crate::common::{Place, numbers};
 use htex_dsp::noise::GaussianNoise;
+use simulated::{RATE_HZ, Rig, pulses};
 
-const RATE_HZ: f64 = 10_000.0;
-
-/// The rig: 1 plus a fifth of a resonance at 180 Hz with a damping of 2 %, by the bilinear
-/// transform.
+/// The rig: 1 plus a fifth of a resonance at 180 Hz with a damping of 2 %.
 fn rig(input: &[f64]) -> Vec<f64> {
-    let (k, z) = ((PI * 180.0 / RATE_HZ).tan(), 0.02);
-    let d = 1.0 + 2.0 * z * k + k * k;
-    let (b, a1, a2) = (k * k / d, 2.0 * (k * k - 1.0) / d, (1.0 - 2.0 * z * k + k * k) / d);
-    let (mut x, mut y) = ([0.0; 2], [0.0; 2]);
-    let step = |&new: &f64| {
-        let out = b * (new + 2.0 * x[0] + x[1]) - a1 * y[0] - a2 * y[1];
-        (x, y) = ([new, x[0]], [out, y[0]]);
-        new + 0.2 * out
-    };
-    input.iter().map(step).collect()
-}
-
-/// Half sines of 1 ms at these times, with these forces.
-fn hammer(seconds: f64, hits: &[(f64, f64)]) -> Vec<f64> {
-    let mut force = vec![0.0_f64; (seconds * RATE_HZ) as usize];
-    for (time_s, peak) in hits {
-        let start = (time_s * RATE_HZ) as usize;
-        for i in 0..=10 {
-            force[start + i] += peak * (PI * i as f64 / 10.0).sin();
-        }
-    }
-    force
+    let resonance = Rig::new(180.0, 0.02).filter(input);
+    input.iter().zip(resonance).map(|(direct, out)| direct + 0.2 * out).collect()
 }
 
 /// A recording of both channels with noise 30 dB below each; the hammer in volts of 22.5 N.
@@ -61,9 +42,9 @@ fn hits_become_the_response_that_recordings_are_divided_by() {
     let place = Place::new();
     // The third hit bounces, the fourth is too strong.
     let first = [(0.2, 10.0), (1.4, 12.0), (2.6, 11.0), (2.64, 4.0), (3.8, 40.0), (5.0, 9.0)];
-    recording(&place, "first.csv", &hammer(6.2, &first), 1);
+    recording(&place, "first.csv", &pulses(6.2, &first), 1);
     let second: Vec<(f64, f64)> = (0..5).map(|i| (0.3 + 1.21 * f64::from(i), 10.0)).collect();
-    recording(&place, "second.csv", &hammer(6.2, &second), 2);
+    recording(&place, "second.csv", &pulses(6.2, &second), 2);
     let files = ["first.csv", "second.csv"];
     let more = ["--force-window", "0.005", "-o", "response.csv", "--svg", "response.svg"];
 
@@ -119,7 +100,7 @@ fn hits_become_the_response_that_recordings_are_divided_by() {
 #[test]
 fn wrong_use_and_unusable_recordings_are_named() {
     let place = Place::new();
-    recording(&place, "one.csv", &hammer(2.0, &[(0.2, 10.0)]), 3);
+    recording(&place, "one.csv", &pulses(2.0, &[(0.2, 10.0)]), 3);
     let half: String =
         (0..20_000).map(|i| format!("{},{},{}\n", f64::from(i) / 5000.0, i % 9, i % 7)).collect();
     place.write("half.csv", format!("t_s,hammer_V,fx_n\n{half}"));

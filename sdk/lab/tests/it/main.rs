@@ -13,6 +13,7 @@ mod record_parts;
 mod record_signals;
 mod recording;
 mod response;
+mod rig;
 mod study_plan;
 mod study_rules;
 mod study_run;

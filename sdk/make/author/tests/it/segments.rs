@@ -1,5 +1,7 @@
 //! Choice of the segments of a recording.
 
+use crate::common::recordings::noise;
+
 use htex_author::recording::Recording;
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
@@ -8,13 +10,6 @@ use htex_author::{
 };
 
 const RATE_HZ: f64 = 1000.0;
-
-/// Uniform random numbers from -1 to 1.
-fn noise(at: usize) -> f64 {
-    let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
-    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
-    (mixed >> 40) as f64 / f64::from(1u32 << 23) - 1.0
-}
 
 /// Friction with texture at 1 kHz, in sweeps given by their start and end in seconds.
 fn friction(seconds: f64, sweeps: &[(f64, f64)]) -> Vec<f64> {

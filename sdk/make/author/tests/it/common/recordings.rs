@@ -125,7 +125,7 @@ impl Columns {
 }
 
 /// Uniform random numbers from -1 to 1, the same on every machine.
-fn noise(at: usize) -> f64 {
+pub fn noise(at: usize) -> f64 {
     let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
     (mixed >> 40) as f64 / f64::from(1u32 << 23) - 1.0

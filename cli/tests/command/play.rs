@@ -74,24 +74,3 @@ fn distance_db(stated: &[f64], measured: &[f64], bins: Vec<usize>) -> f64 {
     let squares = bins.iter().map(|&i| (20.0 * (measured[i] / stated[i]).log10()).powi(2));
     (squares.sum::<f64>() / bins.len() as f64).sqrt()
 }
-
-#[test]
-fn the_demo_goes_the_whole_way() {
-    let place = Place::new();
-    let run = place.run(&["demo", "out"]);
-    assert_eq!(run.code(), 0, "{}", run.error());
-    let rows = run.text().lines().filter(|line| line.split_whitespace().count() == 13).count();
-    assert_eq!(rows, 31, "a header and 30 rows:\n{}", run.text());
-    let surfaces = ["sandpaper", "fine-fabric", "coarse-fabric", "corrugated-paper", "vinyl"];
-    let files = surfaces.map(|surface| format!("out/{surface}.htex"));
-    let mut validate = vec!["validate", "--json"];
-    validate.extend(files.iter().map(String::as_str));
-    for answer in place.json(&validate).as_array().unwrap() {
-        assert_eq!(answer["valid"], true);
-        assert_eq!(answer["findings"].as_array().unwrap().len(), 0, "{answer}");
-    }
-    let report = std::fs::read_to_string(place.path("out/report.html")).unwrap();
-    assert!(report.contains("<svg") && report.contains("simulated"));
-    assert!(!report.contains("src=\"http") && !report.contains("href=\"http"));
-    assert!(place.path("out/vinyl-sbeta.wav").exists());
-}

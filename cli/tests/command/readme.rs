@@ -40,6 +40,20 @@ fn the_table_and_the_picture_are_the_demonstrations() {
         drawn == text("docs/figures/spectra.svg"),
         "docs/figures/spectra.svg: copy out/spectra.svg of `htex demo out` over it"
     );
+    let rows = run.text().lines().filter(|line| line.split_whitespace().count() == 13).count();
+    assert_eq!(rows, 31, "a header and 30 rows:\n{}", run.text());
+    let surfaces = ["sandpaper", "fine-fabric", "coarse-fabric", "corrugated-paper", "vinyl"];
+    let files = surfaces.map(|surface| format!("out/{surface}.htex"));
+    let mut validate = vec!["validate", "--json"];
+    validate.extend(files.iter().map(String::as_str));
+    for answer in place.json(&validate).as_array().unwrap() {
+        assert_eq!(answer["valid"], true);
+        assert_eq!(answer["findings"].as_array().unwrap().len(), 0, "{answer}");
+    }
+    let report = std::fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(report.contains("<svg") && report.contains("simulated"));
+    assert!(!report.contains("src=\"http") && !report.contains("href=\"http"));
+    assert!(place.path("out/vinyl-sbeta.wav").exists());
 }
 
 #[test]

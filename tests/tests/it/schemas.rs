@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use crate::common::node::{packages, ran};
 use htex_base::schema::Schema;
 use htex_format::{Limits, manifest_json};
 use htex_tests::workspace;
@@ -215,10 +215,7 @@ fn questions(documents: &[(&str, &Documents)]) -> Value {
 
 #[test]
 fn ajv_says_the_same_where_it_is() {
-    // This test is target/debug/deps/NAME.
-    let test = std::env::current_exe().unwrap();
-    let packages = test.ancestors().nth(3).unwrap().join("node/node_modules");
-    if !xtask::needs::AJV.met(packages.join("ajv").exists()) {
+    if !xtask::needs::AJV.met(packages().join("ajv").exists()) {
         return;
     }
     let (manifests, scenes) = (manifests(), scenes());
@@ -226,14 +223,7 @@ fn ajv_says_the_same_where_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("questions.json");
     fs::write(&file, questions(&asked).to_string()).unwrap();
-    let ran = Command::new("node")
-        .arg(workspace().join("tests/ajv.cjs"))
-        .arg(&file)
-        .env("NODE_PATH", &packages)
-        .output()
-        .unwrap();
-    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
-    let mut told: Vec<String> = serde_json::from_slice(&ran.stdout).unwrap();
+    let mut told: Vec<String> = serde_json::from_value(ran("ajv.cjs", &[file])).unwrap();
     told.sort_unstable();
     let mut ours = refused("manifest-1.json", &manifests);
     ours.extend(refused("scene-1.json", &scenes));

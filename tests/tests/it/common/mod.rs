@@ -1,2 +1,3 @@
 pub mod builds;
+pub mod node;
 pub mod playing;

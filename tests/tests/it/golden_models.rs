@@ -1,6 +1,7 @@
 //! The models, called through the ABI, against numbers computed independently with SciPy.
 
-use htex_host::{Band, Fit, FitCondition, FitInput, LoadedModel, Registry};
+use crate::common;
+use htex_host::{Band, Fit, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
 /// The paper's variant of sPeak.
@@ -14,17 +15,7 @@ fn model(name: &str) -> LoadedModel {
 }
 
 fn fit(model: &LoadedModel, magnitude: &[f64], options: &[(&str, &str)]) -> Fit {
-    let band = Band::TACTILE;
-    let request = FitInput {
-        band,
-        frequency_hz: &band.grid_hz(),
-        magnitude,
-        signal: &[],
-        signal_rate_hz: 20_000.0,
-        options: &model.options(options).unwrap(),
-        condition: FitCondition::default(),
-    };
-    model.fit(&request).unwrap()
+    common::fit(model, Band::TACTILE, magnitude, (20_000.0, options))
 }
 
 fn fitted_magnitude(model: &LoadedModel, fit: &Fit) -> Vec<f64> {
@@ -160,16 +151,7 @@ fn bands_of_whole_and_narrow_spectra() {
             if case.has_input("mag") { case.input("mag") } else { smooth_spectrum(&grid) };
         let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
         let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
-        let request = FitInput {
-            band,
-            frequency_hz: &grid,
-            magnitude: &magnitude,
-            signal: &[],
-            signal_rate_hz: 20_000.0,
-            options: &bands.options(&options).unwrap(),
-            condition: FitCondition::default(),
-        };
-        let fit = bands.fit(&request).unwrap();
+        let fit = common::fit(&bands, band, &magnitude, (20_000.0, &options));
         let count = fit.parameters[0] as usize;
         case.hold("/below_highest", &fit.parameters[1..=count]);
         case.hold("/step_db", &fit.parameters[count + 1..count + 2]);
@@ -213,16 +195,7 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
         let expected = case.expected("/magnitude");
         let [poles, zeros] = ["a", "b"].map(|key| case.input(key).len().to_string());
         let options = [("poles", &poles[..]), ("zeros", &zeros[..]), ("rate_hz", "1000")];
-        let request = FitInput {
-            band,
-            frequency_hz: &grid,
-            magnitude: &expected,
-            signal: &[],
-            signal_rate_hz: 1_000.0,
-            options: &arma.options(&options).unwrap(),
-            condition: FitCondition::default(),
-        };
-        let fit = arma.fit(&request).unwrap();
+        let fit = common::fit(&arma, band, &expected, (1_000.0, &options));
         let magnitude = arma.magnitude(&fit.parameters, band, &grid).unwrap();
         // The last bins are next to a zero at the Nyquist frequency.
         let errors = magnitude
@@ -250,16 +223,7 @@ fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
         .map(|&f| gain * htex_dsp::linear_prediction::ar_magnitude(&truth, f, rate_hz))
         .collect();
     let ar = model("ar");
-    let request = FitInput {
-        band,
-        frequency_hz: &band.grid_hz(),
-        magnitude: &magnitude,
-        signal: &[],
-        signal_rate_hz: rate_hz,
-        options: &ar.options(&[("order", "2")]).unwrap(),
-        condition: FitCondition::default(),
-    };
-    let fit = ar.fit(&request).unwrap();
+    let fit = common::fit(&ar, band, &magnitude, (rate_hz, &[("order", "2")]));
     // The bin at 0 Hz and half of the bin at 1 kHz do not belong to the process: 1 % of the power.
     assert!((fit.parameters[1] - truth[0]).abs() < 0.01, "{:?}", fit.parameters);
     assert!((fit.parameters[2] - truth[1]).abs() < 0.01, "{:?}", fit.parameters);

@@ -1,9 +1,10 @@
 //! sPeak's lines: their frequency, height and sound.
 
+use crate::common::fit;
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
 use htex_dsp::spectrum::SegmentAnalyzer;
 use htex_format::round_parameters;
-use htex_host::{Band, FitCondition, FitInput, LoadedModel, Registry, Stream};
+use htex_host::{Band, LoadedModel, Registry, Stream};
 
 const BAND: Band = Band::TACTILE;
 const RATE_HZ: f64 = 4_000.0;
@@ -44,16 +45,7 @@ struct Stored {
 
 fn stored(magnitude: &[f64], options: &[(&str, &str)]) -> Stored {
     let (model, grid) = (speak(), BAND.grid_hz());
-    let request = FitInput {
-        band: BAND,
-        frequency_hz: &grid,
-        magnitude,
-        signal: &[],
-        signal_rate_hz: RATE_HZ,
-        options: &model.options(options).unwrap(),
-        condition: FitCondition::default(),
-    };
-    let fit = model.fit(&request).unwrap();
+    let fit = fit(&model, BAND, magnitude, (RATE_HZ, options));
     let parameters = round_parameters(&stored_fields(model.descriptor()), &fit.parameters).unwrap();
     let reference = SpectrumRef { band: BAND, frequency_hz: &grid, magnitude };
     let level_n = stored_level(&model, &fit, &parameters, reference, Level::Recording).unwrap();

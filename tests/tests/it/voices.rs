@@ -1,8 +1,9 @@
 //! Requirements of the voice of every model: it matches its magnitude and level, before and after
 //! other parameters, alone and with others.
 
+use crate::common::fit;
 use htex_dsp::grid::level_rms;
-use htex_host::{Band, FitCondition, FitInput, LoadedModel, Registry, Stream, render_together};
+use htex_host::{Band, LoadedModel, Registry, Stream, render_together};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum};
 use htex_tests::smooth_spectrum;
 
@@ -13,19 +14,10 @@ fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
     let ripple = |(i, m): (usize, &f64)| m * (1.0 + 0.3 * (i as f64 * 0.9).sin());
     let magnitude: Vec<f64> = smooth_spectrum(&grid).iter().enumerate().map(ripple).collect();
     let models = Registry::builtin();
-    let fit = |model: &LoadedModel| {
-        let request = FitInput {
-            band,
-            frequency_hz: &grid,
-            magnitude: &magnitude,
-            signal: &[],
-            signal_rate_hz: RATE_HZ,
-            options: &model.options(&[]).unwrap(),
-            condition: FitCondition::default(),
-        };
-        (model.clone(), model.fit(&request).unwrap().parameters)
+    let fitted = |model: &LoadedModel| {
+        (model.clone(), fit(model, band, &magnitude, (RATE_HZ, &[])).parameters)
     };
-    models.models().iter().map(fit).collect()
+    models.models().iter().map(fitted).collect()
 }
 
 fn stream(model: &LoadedModel, parameters: &[f64], seed: u64) -> Stream {
@@ -150,16 +142,7 @@ fn louder_at_one_end(model: &LoadedModel) -> Vec<f64> {
     let grid = band.grid_hz();
     let curve = |f: &f64| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin());
     let magnitude: Vec<f64> = grid.iter().map(curve).collect();
-    let request = FitInput {
-        band,
-        frequency_hz: &grid,
-        magnitude: &magnitude,
-        signal: &[],
-        signal_rate_hz: RATE_HZ,
-        options: &model.options(&[]).unwrap(),
-        condition: FitCondition::default(),
-    };
-    model.fit(&request).unwrap().parameters
+    fit(model, band, &magnitude, (RATE_HZ, &[])).parameters
 }
 
 #[test]

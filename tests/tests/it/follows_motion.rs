@@ -2,20 +2,19 @@
 //! the way, and a surface that feels the same at the same place. Tested as native libraries and as
 //! WASM modules.
 
-use crate::common::builds;
+use crate::common::{builds, scenes};
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use builds::*;
 use htex::model::Search;
 use htex::play::Reach;
 use htex::{Registry, Texture, Voice, VoiceOptions};
-use htex_author::recording::TraceColumns;
 use htex_author::{AssetRequest, Exploration, ModelRequest, Recording, Take, fit_asset};
-use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_host::{Band, Stream};
-use htex_scene::file::{Budget, DeviceChoice, Motion, SceneFile, Surface};
-use htex_scene::{Costs, Plan, Renderer, Scene, Trace, plan};
+use htex_scene::file::Motion;
+use htex_scene::{Plan, Renderer};
+use scenes::{planned, rendered, trace, traced};
 
 const RATE_HZ: f64 = 20_000.0;
 /// Speed and force stated for the recordings.
@@ -68,8 +67,8 @@ fn bursts_follow(file: &Path) {
 
     // 25 mm/s in the first half, 100 mm/s in the second.
     let path = |t: f64| 25.0 * t + 75.0 * (t - 10.0).max(0.0);
-    let scene = traced(&asset, trace(20.0, path));
-    let plan = planned(&scene);
+    let scene = traced(&asset, trace(20.0, FORCE_N, |t| [path(t), 0.0]));
+    let plan = planned(&scene, RATE_HZ);
     the_plan_leaves_the_motion_to_the_model(&plan);
     let played = rendered(&scene, &plan);
     let (slow, fast) = played.split_at(played.len() / 2);
@@ -79,9 +78,9 @@ fn bursts_follow(file: &Path) {
 
 /// In a live scene, a reading with an impossible force or speed does not reach the model.
 fn one_bad_reading_is_not_felt(asset: &Texture) {
-    let mut scene = traced(asset, trace(1.0, |t| 50.0 * t));
+    let mut scene = traced(asset, trace(1.0, FORCE_N, |t| [50.0 * t, 0.0]));
     (scene.file.motion, scene.trace) = (Motion::Live, None);
-    let plan = planned(&scene);
+    let plan = planned(&scene, RATE_HZ);
     let felt = |bad: Option<(f64, f64)>| {
         let mut renderer = Renderer::new(&scene, &plan).unwrap();
         let mut out = vec![0.0; 20_000];
@@ -151,8 +150,8 @@ fn place_is_kept(file: &Path) {
     let through_the_facade = played(&mut voice(&asset), WAY_S, by_place);
     is_the_same_on_the_way_back("facade", &through_the_facade);
 
-    let scene = traced(&asset, trace(WAY_S, there_and_back));
-    let plan = planned(&scene);
+    let scene = traced(&asset, trace(WAY_S, FORCE_N, |t| [there_and_back(t), 0.0]));
+    let plan = planned(&scene, RATE_HZ);
     the_plan_leaves_the_motion_to_the_model(&plan);
     // A scene reverses the force when the finger turns round.
     let mut played = rendered(&scene, &plan);
@@ -247,60 +246,6 @@ fn played(
     out
 }
 
-fn trace(seconds: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
-    let t_s: Vec<f64> = (0..=(seconds * 500.0) as usize).map(|row| row as f64 / 500.0).collect();
-    Trace::new(TraceColumns {
-        x_mm: t_s.iter().map(|&t| x_mm(t)).collect(),
-        y_mm: vec![0.0; t_s.len()],
-        force_n: vec![FORCE_N; t_s.len()],
-        speed_mm_s: None,
-        warnings: Vec::new(),
-        t_s,
-    })
-}
-
-/// A scene with one surface that covers everything, and a finger that follows a trace.
-fn traced(asset: &Texture, trace: Trace) -> Scene {
-    Scene {
-        file: SceneFile {
-            htex_scene: "1.0".to_owned(),
-            surfaces: vec![Surface {
-                asset: PathBuf::from("followed.htex"),
-                region: None,
-                layer: 0,
-                gain: 1.0,
-                representation: "auto".to_owned(),
-            }],
-            motion: Motion::Trace("trace.csv".into()),
-            device: DeviceChoice::default(),
-            duration_s: None,
-            seed: 1,
-            budget: Budget::default(),
-            effects: Default::default(),
-        },
-        folder: PathBuf::new(),
-        assets: vec![asset.clone()],
-        trace: Some(trace),
-        response: None,
-        settings: Settings::default(),
-        notes: Vec::new(),
-    }
-}
-
-fn planned(scene: &Scene) -> Plan {
-    let file = Capabilities {
-        quantity: Quantity::LateralForce,
-        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
-        default_rate_hz: RATE_HZ,
-        limit: None,
-        step: None,
-        carrier_hz: None,
-        paced: false,
-        block_frames: 256,
-    };
-    plan(scene, &file, &Costs::embedded()).unwrap()
-}
-
 /// The plan scales neither frequencies nor levels, and says why.
 fn the_plan_leaves_the_motion_to_the_model(plan: &Plan) {
     for name in ["frequency_scaling", "level_scaling"] {
@@ -308,13 +253,6 @@ fn the_plan_leaves_the_motion_to_the_model(plan: &Plan) {
         let reason = &left_out.unwrap_or_else(|| panic!("{name} is in")).reason;
         assert_eq!(reason, "the model follows the motion itself");
     }
-}
-
-fn rendered(scene: &Scene, plan: &Plan) -> Vec<f32> {
-    let mut renderer = Renderer::new(scene, plan).unwrap();
-    let mut out = vec![0.0; renderer.frames_left().unwrap() as usize];
-    assert_eq!(renderer.render(&mut out).unwrap(), out.len());
-    out
 }
 
 fn rms(samples: &[f32]) -> f64 {

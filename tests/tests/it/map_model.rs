@@ -2,19 +2,15 @@
 //! across the direction of its path.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
+use crate::common::scenes;
 use htex::{Registry, Texture, VoiceOptions};
 use htex_author::by_hand::{ByHand, make};
-use htex_author::recording::TraceColumns;
-use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_host::Band;
 use htex_model::{
     Error, Fit, FitInput, Model, Motion, MotionVoice, Numbers, StaticDescriptor, StaticField,
     Values, Voice, mix,
 };
-use htex_scene::file::{Budget, DeviceChoice, Motion as SceneMotion, SceneFile, Surface};
-use htex_scene::{Costs, Renderer, Scene, Trace, plan};
 
 const RATE_HZ: f64 = 20_000.0;
 const HUM_HZ: f64 = 200.0;
@@ -128,54 +124,8 @@ fn played(y_mm: Option<f64>) -> Vec<f32> {
 }
 
 fn rendered(y_mm: f64) -> Vec<f32> {
-    let t_s: Vec<f64> = (0..=500).map(|row| f64::from(row) / 500.0).collect();
-    let trace = Trace::new(TraceColumns {
-        x_mm: t_s.iter().map(|t| SPEED_MM_S * t).collect(),
-        y_mm: vec![y_mm; t_s.len()],
-        force_n: vec![FORCE_N; t_s.len()],
-        speed_mm_s: None,
-        warnings: Vec::new(),
-        t_s,
-    });
-    let scene = Scene {
-        file: SceneFile {
-            htex_scene: "1.0".to_owned(),
-            surfaces: vec![Surface {
-                asset: PathBuf::from("stripes.htex"),
-                region: None,
-                layer: 0,
-                gain: 1.0,
-                representation: "auto".to_owned(),
-            }],
-            motion: SceneMotion::Trace("trace.csv".into()),
-            device: DeviceChoice::default(),
-            duration_s: None,
-            seed: 1,
-            budget: Budget::default(),
-            effects: Default::default(),
-        },
-        folder: PathBuf::new(),
-        assets: vec![stripes()],
-        trace: Some(trace),
-        response: None,
-        settings: Settings::default(),
-        notes: Vec::new(),
-    };
-    let file = Capabilities {
-        quantity: Quantity::LateralForce,
-        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
-        default_rate_hz: RATE_HZ,
-        limit: None,
-        step: None,
-        carrier_hz: None,
-        paced: false,
-        block_frames: 256,
-    };
-    let plan = plan(&scene, &file, &Costs::embedded()).unwrap();
-    let mut renderer = Renderer::new(&scene, &plan).unwrap();
-    let mut out = vec![0.0; renderer.frames_left().unwrap() as usize];
-    renderer.render(&mut out).unwrap();
-    out
+    let scene = scenes::traced(&stripes(), scenes::trace(1.0, FORCE_N, |t| [SPEED_MM_S * t, y_mm]));
+    scenes::rendered(&scene, &scenes::planned(&scene, RATE_HZ))
 }
 
 /// RMS in the middle, after all fades.

@@ -1,6 +1,7 @@
 pub mod builds;
 pub mod node;
 pub mod playing;
+pub mod scenes;
 
 use htex_host::{Band, Fit, FitCondition, FitInput, LoadedModel};
 

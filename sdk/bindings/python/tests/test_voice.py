@@ -48,20 +48,6 @@ def test_motion_synthesis_and_effects_are_those_of_the_command(texture: htex.Tex
         assert texture.voice("ar", synthesis=synthesis).render(N).tobytes() == expected.tobytes()
 
 
-@pytest.mark.parametrize("model", ["ar", "bands", "mfcc"])
-def test_samples_have_the_spectrum_that_scipy_measures(texture: htex.Texture, model: str) -> None:
-    samples = texture.voice(model=model).render(20_000 * 120)
-    frequency, power = signal.welch(samples, 20_000, "hann", 4000, scaling="spectrum")
-    inside = (frequency >= 40) & (frequency <= 960)
-    expected = texture.spectrum(frequency[inside], model=model).magnitude
-    # Compares groups of eight bins. Each bin averages about 1200 windows.
-    of = lambda x: np.add.reduceat(x, np.arange(0, len(x) - 8, 8))[:-1]
-    error_db = 10 * np.log10(of(2 * power[inside]) / of(expected**2))
-    assert abs(error_db).max() < 0.7
-    rms = np.sqrt(np.mean(signal.sosfilt(signal.butter(8, [15, 1100], "bandpass", fs=20_000, output="sos"), samples) ** 2))
-    assert 20 * abs(np.log10(rms / texture.level(model=model))) < 1.0
-
-
 def test_blocks_do_not_change_the_samples(texture: htex.Texture) -> None:
     whole = texture.voice("ar").render(N)
     voice = texture.voice("ar")

@@ -10,7 +10,8 @@ fn reports(folder: &str, arguments: &[&str], files: &[&str]) -> Vec<Value> {
     let mut command = place.command(&[arguments, &["--json"], files].concat());
     let output = command.current_dir(folder).output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
-    let reports: Vec<Value> = serde_json::from_slice(&output.stdout).expect(&error);
+    let reports: Vec<Value> =
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{files:?}: {error}"));
     let all_valid = reports.iter().all(|report| report["valid"] == true);
     assert_eq!(output.status.code(), Some(i32::from(!all_valid)), "{files:?}: {error}");
     reports

@@ -78,9 +78,8 @@ pub fn test(names: &[String]) -> Result<()> {
     }
     let named =
         |binding: &&Binding| names.is_empty() || names.iter().any(|name| name == binding.name);
-    // Three at a time on two cores, because the tests mostly wait: for browsers, for emulated
-    // processors, for a linker that uses one core, and for their turn to compile.
-    let tested = at_a_time(3, BINDINGS.iter().filter(named).collect(), Binding::test);
+    // Two at a time on two cores. With three, a browser that plays sound runs dry.
+    let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)
 }
 

@@ -23,7 +23,7 @@ use crate::outputs::check_outputs;
 use crate::plugins::{PluginArgs, way};
 use crate::recordings::RecordingArgs;
 
-/// Measure the accuracy, size and computing time of models
+/// Measure models' accuracy, size and time
 ///
 /// Fits models to your recordings with many settings, i.e. combinations of the models' options. For
 /// each setting, measures the error, the size in bytes and the computing time.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, anyhow};
 use clap::ValueEnum;
@@ -123,6 +124,9 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
 
 /// Copies a built file to the plugin folder, through a temporary name and a rename.
 fn place(built: &Path, name: &str) -> Result<()> {
+    // Tests in several threads of one process place the same files.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _held = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
     fs_err::create_dir_all(&folder)?;
     // A test may have loaded the old file. Writing into a loaded library would crash its process.

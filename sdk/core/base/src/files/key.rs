@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::files::private;
 
@@ -64,9 +65,12 @@ impl Key {
 /// Writes a new key to a temporary file and links it to its path, unless another process has
 /// already created one.
 fn make(folder: &Path, path: &Path) -> io::Result<()> {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let key = random()?;
     let mut beside = path.as_os_str().to_owned();
-    beside.push(format!(".{}.part", std::process::id()));
+    // The name is unique, so that processes and threads that create the same key do not collide.
+    beside.push(format!(".{}-{count}.part", std::process::id()));
     let beside = folder.join(beside);
     let mut options = File::options();
     options.write(true).create_new(true);
@@ -95,5 +99,34 @@ fn random() -> io::Result<[u8; blake3::KEY_LEN]> {
 impl std::fmt::Debug for Key {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Key(…)")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eight threads create one key at the same moment, as an app does that loads its textures in
+    /// threads on its first day.
+    #[test]
+    fn threads_that_create_a_key_get_the_same_one() {
+        for _ in 0..200 {
+            let folder = tempfile::tempdir().unwrap();
+            let start = std::sync::Barrier::new(8);
+            let load = || {
+                start.wait();
+                Key::load_or_create(folder.path(), "wasm.key").unwrap().tag("module", b"content")
+            };
+            let tags: Vec<_> = std::thread::scope(|scope| {
+                let threads: Vec<_> = (0..8).map(|_| scope.spawn(load)).collect();
+                threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+            });
+            assert!(tags.iter().all(|tag| *tag == tags[0]));
+            assert_eq!(
+                std::fs::read_dir(folder.path()).unwrap().count(),
+                1,
+                "a temporary file is left"
+            );
+        }
     }
 }

@@ -18,7 +18,7 @@ function parts(mode: string): Plugin {
       if (id === `\0${WORKERS}`) {
         const isSingle = mode === "single";
         const text = async (entry: string) => (isSingle ? JSON.stringify(dataAddress((await script(entry)).code)) : "undefined");
-        return `export const authorWorker = ${await text(".htex/author-worker.js")}; export const guardedWorker = ${await text(".htex/worker.js")};`;
+        return `export const authorWorker = ${await text(".htex/author-worker.js")}; export const guardedWorker = ${await text(".htex/worker.js")}; export const readingWorker = ${await text("src/reading-worker.ts")};`;
       }
       if (id === `\0${MODULES}`) {
         if (mode === "single") return "export const library = undefined; export const author = undefined; export const importer = undefined;";
@@ -42,6 +42,7 @@ export default defineConfig(({ mode }) => ({
     ],
   },
   assetsInclude: ["**/*.htexlib"],
+  worker: { format: "es", plugins: () => [ownModules] },
   build: { target: "es2022", chunkSizeWarningLimit: 12_000 },
   plugins: [ownModules, ...(mode === "part" ? [] : [parts(mode)])],
 }));

@@ -22,7 +22,13 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     run(program("node", &tests)
         .args(["--test", "--test-concurrency=1"])
-        .args(["page.test.mjs", "import.test.mjs", "served.test.mjs", "firefox.test.mjs"])
+        .args([
+            "page.test.mjs",
+            "import.test.mjs",
+            "opening.test.mjs",
+            "served.test.mjs",
+            "firefox.test.mjs",
+        ])
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)
         .env("HTEX_CHROMIUM", which(chromium)))

@@ -5,6 +5,7 @@ import { useEffect, useErrorBoundary, useRef } from "preact/hooks";
 
 import { Dock } from "./parts/dock.tsx";
 import { Icon, type IconName } from "./parts/icons.tsx";
+import { Opening } from "./parts/opening.tsx";
 import { Top } from "./parts/top.tsx";
 import { Compare } from "./screens/compare.tsx";
 import { Give } from "./screens/give.tsx";
@@ -92,6 +93,7 @@ export function App() {
         </Safely>
       </main>
       <Dock />
+      <Opening />
       <Notice />
     </div>
   );

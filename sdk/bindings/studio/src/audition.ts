@@ -5,6 +5,9 @@ import { pilot, setPilot } from "./motion.ts";
 
 let lent = false;
 
+/** What is looked at; a texture that has yet to be opened may come when something else is. */
+let look: object | null = null;
+
 /**
  * Plays a texture while the user browses it. If the finger rests, an autopilot slides it back and
  * forth.
@@ -19,6 +22,7 @@ export function audition(sounding: Sounding) {
 
 /** Plays the present texture again. */
 export function endAudition() {
+  look = null;
   tried.value = null;
   if (!lent) return;
   lent = false;
@@ -26,15 +30,16 @@ export function endAudition() {
 }
 
 /** Handlers of an element that plays a texture while it is looked at. */
-export function onLook(sounding: () => Sounding | null) {
-  const begin = () => {
-    const now = sounding();
-    if (now) audition(now);
+export function onLook(sounding: () => Promise<Sounding | null> | Sounding | null) {
+  const begin = async () => {
+    const own = (look = {});
+    const now = await sounding();
+    if (now && look === own) audition(now);
   };
   return {
-    onPointerEnter: (event: PointerEvent) => event.pointerType === "mouse" && begin(),
+    onPointerEnter: (event: PointerEvent) => event.pointerType === "mouse" && void begin(),
     onPointerLeave: (event: PointerEvent) => event.pointerType === "mouse" && endAudition(),
-    onFocus: begin,
+    onFocus: () => void begin(),
     onBlur: endAudition,
   };
 }

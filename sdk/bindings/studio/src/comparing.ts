@@ -7,7 +7,7 @@ import { tried } from "./engine.ts";
 import { opened, presentWork, recordedLoop } from "./reference.ts";
 import { motion } from "./shadow.ts";
 import { items } from "./shelf.ts";
-import { present, texture } from "./state.ts";
+import { fail, present, texture } from "./state.ts";
 
 export type Side = "a" | "b";
 
@@ -42,12 +42,17 @@ function played(id: string): Played | null {
   const [now, document] = [texture.value, present.value];
   if (!now || !document) return null;
   const loop = id.startsWith(RECORDING) ? recordedLoop(id.slice(RECORDING.length)) : null;
+  if (loop === undefined) return null;
   if (loop) return { name: `the recording ${loop.recording}`, texture: now, model: modelOf(now, document.model), loop };
   if (id === "opened" && opened.value) return { name: "as it was opened", ...opened.value };
   const model = id.startsWith("model ") ? id.slice(6) : null;
   if (model && now.models.includes(model)) return { name: model.replace("org.htex.", ""), texture: now, model };
   const item = items.value.find((one) => one.id === id);
-  if (item) return { name: item.name, texture: item.texture, model: item.model };
+  if (item) {
+    // Until it is open there is nothing to play; then this is asked again.
+    item.open().catch(fail);
+    return item.opened.value && { name: item.name, ...item.opened.value };
+  }
   return { name: document.name, texture: now, model: modelOf(now, document.model) };
 }
 

@@ -1,12 +1,14 @@
-// Files of other haptic formats. A file that states everything is opened at once. Otherwise the
-// user first gives what it does not state.
+// Files of other haptic formats. A file that states everything is opened at once. What the others do
+// not state, the user gives once for all of them.
 
-import { signal, type Signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { importFile, type ActuatorRange, type Asked, type Imported, type ImportFormat, type ImportReport, type ImportSettings } from "htex/import";
 
 import { theImporter } from "./importer.ts";
-import { add } from "./shelf.ts";
-import { begin, fail, say, screen } from "./state.ts";
+import { told, type Problem, type Work } from "./opening.ts";
+import { add, type Item } from "./shelf.ts";
+import { breathe } from "./slices.ts";
+import { begin, say, screen } from "./state.ts";
 
 /** Extensions of the files, as `htex formats` lists them. */
 export const EXTENSIONS = ["xml", "haptic", "ahap", "hjif", "png", "glb", "gltf"];
@@ -21,7 +23,10 @@ export interface Waiting {
   readonly file: NamedFile;
   readonly format: ImportFormat;
   readonly asks: readonly Asked[];
-  readonly given: Signal<Given>;
+  /** Whether it is imported with what is given now. */
+  readonly isChosen: boolean;
+  /** Why it could not be imported with what was given. */
+  readonly problem: string | null;
 }
 
 /** A file that was imported. */
@@ -32,21 +37,19 @@ export interface Done {
   readonly report: ImportReport;
 }
 
-/** What the user states about a file. */
-export interface Given extends Pick<ImportSettings, "full_scale" | "quantity" | "speed_mm_s" | "force_n" | "pitch_mm" | "profile"> {
+/** What the user states about the files that wait. It stays for those that come after them. */
+export interface Given extends Pick<ImportSettings, "full_scale" | "quantity" | "speed_mm_s" | "force_n" | "pitch_mm"> {
   readonly license: string;
+  /** The actuator for each format whose files are for one. */
+  readonly profiles: Readonly<Record<string, string>>;
 }
 
 export const waiting = signal<readonly Waiting[]>([]);
+export const given = signal<Given>({ license: "", profiles: {} });
 export const done = signal<readonly Done[]>([]);
 export const actuators = signal<readonly ActuatorRange[]>([]);
 /** Name of the file that is read now. */
 export const importing = signal<string | null>(null);
-
-let aborting: AbortController | null = null;
-
-/** What was said of the last file, with which the next one begins. */
-let said: Given = { license: "" };
 
 const extensionOf = (name: string) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
@@ -55,79 +58,116 @@ export const isImported = (name: string) => name.includes(".") && EXTENSIONS.inc
 /** Words in a row: "a, b and c". */
 export const list = (words: readonly string[]) => [words.slice(0, -1).join(", "), ...words.slice(-1)].filter(Boolean).join(" and ");
 
-/** Takes a file: it is imported, or waits for what it does not say. */
-export async function takeImport(file: NamedFile) {
+/** How many of something, in words. */
+export const counted = (count: number, what: string) => `${count.toLocaleString("en")} ${what}${count === 1 ? "" : "s"}`;
+
+/** What a format's file becomes, or that it waits. */
+interface Known {
+  readonly file: NamedFile;
+  readonly format: ImportFormat;
+  readonly asks: readonly Asked[];
+}
+
+/** Takes files: they are imported, or wait for what they do not say. One that cannot be read is told, and the next one is taken. */
+export async function takeImports(files: readonly NamedFile[], work: Work) {
   const importer = await theImporter();
   const { formats, profiles } = importer.formats();
   actuators.value = profiles;
-  const asks = importer.asks(file);
-  const format = formats.find(({ extensions }) => extensions.includes(extensionOf(file.name)));
-  if (!format) return;
-  if (asks.length === 0) {
-    await finish(file, format, {});
-    return;
+  const problems: Problem[] = [];
+  const known: Known[] = [];
+  for (const file of files) {
+    const format = formats.find(({ extensions }) => extensions.includes(extensionOf(file.name)));
+    try {
+      if (format) known.push({ file, format, asks: importer.asks(file) });
+    } catch (error) {
+      problems.push({ name: file.name, error });
+    }
+    await breathe();
   }
-  waiting.value = [...without(file.name), { file, format, asks, given: signal(said) }];
-  screen.value = "record";
-}
-
-const without = (name: string) => waiting.peek().filter(({ file }) => file.name !== name);
-
-export function leaveOut({ file }: Waiting) {
-  waiting.value = without(file.name);
-}
-
-/** Imports a file that waits, with what is given of what its format takes. */
-export async function importWaiting({ file, format, given }: Waiting) {
-  const { license, ...all } = given.peek();
-  const taken = Object.entries(all).filter(([name, value]) => format.settings.includes(name) && value !== undefined);
-  if (!(await finish(file, format, { ...Object.fromEntries(taken), ...(license ? { license } : {}) }))) return;
-  const { full_scale, quantity, speed_mm_s, force_n } = all;
-  said = { license, full_scale, quantity, speed_mm_s, force_n };
-  waiting.value = without(file.name);
-}
-
-/** Imports in a worker; null if it was stopped. */
-async function imported(file: NamedFile, settings: ImportSettings): Promise<Imported | null> {
-  importing.value = file.name;
-  aborting = new AbortController();
-  try {
-    return await importFile({ ...file }, { ...settings, signal: aborting.signal });
-  } catch (error) {
-    if ((error as { code?: string }).code !== "aborted") throw error;
-    say("The import was stopped.");
-    return null;
-  } finally {
-    importing.value = null;
-    aborting = null;
+  const asking = known.filter(({ asks }) => asks.length > 0).map((one) => ({ ...one, isChosen: true, problem: null }));
+  if (asking.length > 0) {
+    waiting.value = [...without(asking), ...asking];
+    screen.value = "record";
   }
+  const complete = known.filter(({ asks }) => asks.length === 0).map((one) => ({ ...one, settings: {} }));
+  const made = await importAll(complete, work);
+  return { problems: [...problems, ...made.problems], text: made.text };
 }
+
+const without = (all: readonly Known[]) => waiting.peek().filter(({ file }) => !all.some((other) => other.file.name === file.name));
+
+export function leaveOut(all: readonly Waiting[]) {
+  waiting.value = without(all);
+}
+
+/** Chooses whether a file that waits is imported with what is given now. */
+export function chooseWaiting(one: Waiting, isChosen: boolean) {
+  waiting.value = waiting.peek().map((other) => (other === one ? { ...one, isChosen } : other));
+}
+
+let aborting: AbortController | null = null;
 
 export function stop() {
   aborting?.abort();
 }
 
-/** Imports a file, and puts the texture on the shelf and on the pad; false if it was stopped. */
-async function finish(file: NamedFile, format: ImportFormat, settings: ImportSettings) {
-  const made = await imported(file, settings);
-  if (!made) return false;
-  const { texture, report } = made;
+/** The settings that a format takes of what is given. */
+function settingsFor({ name, settings }: ImportFormat): ImportSettings {
+  const { license, profiles, ...all } = given.peek();
+  const taken = Object.entries({ ...all, profile: profiles[name] }).filter(([setting, value]) => settings.includes(setting) && value !== undefined);
+  return { ...Object.fromEntries(taken), ...(license ? { license } : {}) };
+}
+
+/** Imports the chosen ones of the files that wait. Those that cannot be stay, with the reason. */
+export async function importChosen() {
+  const chosen = waiting.peek().filter(({ isChosen }) => isChosen);
+  aborting = new AbortController();
+  try {
+    const all = chosen.map((one) => ({ ...one, settings: settingsFor(one.format) }));
+    const { text, problems } = await importAll(all, { step: () => {}, signal: aborting.signal });
+    waiting.value = waiting.peek().map((one) => ({ ...one, isChosen: true, problem: problems.find(({ name }) => name === one.file.name)?.text ?? null }));
+    // The distance of pixels and the actuator are of these files.
+    if (waiting.peek().length === 0) given.value = { ...given.peek(), pitch_mm: undefined, profiles: {} };
+    say([text, told(problems)].filter(Boolean).join(" "), problems.length > 0 ? "bad" : "good");
+  } finally {
+    aborting = null;
+  }
+}
+
+/** Imports files one after the other, in a worker; puts the textures on the shelf, and the first one on the pad. */
+async function importAll(all: readonly (Known & { settings: ImportSettings })[], { step, signal: stopped }: Work) {
+  const problems: (Problem & { text: string })[] = [];
+  const made: Item[] = [];
+  for (const { file, format, settings } of all) {
+    if (stopped.aborted) break;
+    step(file.name);
+    importing.value = file.name;
+    try {
+      made.push(await importOne(file, format, settings, stopped, made.length === 0));
+      waiting.value = waiting.peek().filter((one) => one.file !== file);
+    } catch (error) {
+      if (!stopped.aborted) problems.push({ name: file.name, error, text: (error as Error).message });
+    }
+  }
+  importing.value = null;
+  const [first] = made;
+  const sentence = made.length > 1 ? `${counted(made.length, "texture")} are on the shelf. ${first?.name} is on the pad.` : first ? `${first.name} is on the shelf and on the pad.` : "";
+  return { problems, text: [stopped.aborted ? "The import was stopped." : "", sentence].filter(Boolean).join(" ") };
+}
+
+async function importOne(file: NamedFile, format: ImportFormat, settings: ImportSettings, stopped: AbortSignal, isFirst: boolean) {
+  const { texture, report }: Imported = await importFile({ ...file }, { ...settings, signal: stopped });
   const bytes = texture.toBytes();
   texture.free();
   const item = await add(bytes);
-  done.value = [{ file, format, bytes, report }, ...done.peek().filter((one) => one.file.name !== file.name)];
-  await toPad(done.peek()[0], format.fitted ? report.ranked[0] : item.model);
+  const one: Done = { file, format, bytes, report };
+  done.value = [...done.peek().filter((other) => other.file.name !== file.name), one];
+  if (isFirst) await toPad(one, format.fitted ? report.ranked[0] : undefined);
   if (report.warnings.length > 0) screen.value = "record";
-  say(`${item.name} is on the shelf and on the pad.`, "good");
-  return true;
+  return item;
 }
 
 /** Puts an imported texture on the pad, played by a model. */
-export async function toPad(one: Done | undefined, model?: string) {
-  if (one) await begin(one.bytes, `import ${one.file.name}`, model);
-}
-
-/** Takes files one after the other; one that cannot be read is told, and the next one is taken. */
-export async function takeImports(files: readonly NamedFile[]) {
-  for (const file of files) await takeImport(file).catch(fail);
+export async function toPad(one: Done, model?: string) {
+  await begin(one.bytes, `import ${one.file.name}`, model);
 }

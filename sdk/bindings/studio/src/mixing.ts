@@ -31,9 +31,10 @@ const asBands = new Map<string, { of: unknown; texture: Texture }>();
 
 function bandsOf(author: Author, id: string): Texture | null {
   const item = items.peek().find((one) => one.id === id);
-  const source = item?.texture ?? texture.peek();
+  const opened = item?.opened.peek();
+  const source = item ? opened?.texture : texture.peek();
   const of = item ?? present.peek();
-  const model = item?.model ?? present.peek()?.model;
+  const model = item ? opened?.model : present.peek()?.model;
   if (!source || !model) return null;
   const cached = asBands.get(id);
   if (cached?.of === of) return cached.texture;
@@ -48,7 +49,10 @@ function bandsOf(author: Author, id: string): Texture | null {
 const percent = (part: number) => `${Math.round(100 * part)} %`;
 
 /** The mixture at the place; its provenance names what it was mixed of. */
-function mixture(author: Author): Texture | null {
+async function mixture(): Promise<Texture | null> {
+  const author = await theAuthor();
+  const wanted = new Set(chosen.peek());
+  await Promise.all(items.peek().map((item) => wanted.has(item.id) && item.open()));
   const four = chosen.peek().map((id) => bandsOf(author, id));
   const [a, b, c, d] = four;
   if (!a || !b || !c || !d) return null;
@@ -67,7 +71,7 @@ let sounding: Texture | null = null;
 
 /** Plays the mixture at the place. */
 export async function listen() {
-  const mixed = mixture(await theAuthor());
+  const mixed = await mixture();
   if (!mixed) return;
   const before = sounding;
   sounding = mixed;
@@ -83,7 +87,7 @@ export function endListening() {
 
 /** Takes the mixture as the next step of the present texture. */
 export async function takeMixture() {
-  const mixed = mixture(await theAuthor());
+  const mixed = await mixture();
   if (!mixed) return;
   endListening();
   edit({ texture: mixed, bytes: mixed.toBytes(), model: BANDS, change: "mix" });

@@ -3,7 +3,7 @@
 import { setAuthorLibrary, setLibrary } from "htex";
 import { setImportLibrary } from "htex/import";
 import { author, importer, library } from "virtual:modules";
-import { authorWorker, guardedWorker } from "virtual:workers";
+import { authorWorker, guardedWorker, readingWorker } from "virtual:workers";
 
 /** Names of the modules, and of the blocks of the page of one file that have them, compressed and as base64. */
 const LIBRARY = "htex.wasm";
@@ -27,6 +27,25 @@ const source = async (name: string, address: string | undefined) => {
   return text === null ? absolute(address ?? name) : inflated(text);
 };
 
+/** Modules that are compiled here once, since a worker of the page uses them, too. */
+const compiling = new Map<string, Promise<WebAssembly.Module>>();
+
+async function compile(name: string, address: string | undefined) {
+  const text = block(name);
+  if (text !== null) return WebAssembly.compile(await inflated(text));
+  const response = await fetch(absolute(address ?? name));
+  if (!response.ok) throw new Error(`${name} cannot be read: ${response.status} ${response.statusText}; reload the page`);
+  const isTyped = response.headers.get("content-type")?.startsWith("application/wasm");
+  return isTyped ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+}
+
+function compiled(name: string, address: string | undefined) {
+  const module = compiling.get(name) ?? compile(name, address);
+  compiling.set(name, module);
+  module.catch(() => compiling.delete(name));
+  return module;
+}
+
 /** Sets the player's module. */
 export async function setPlayer() {
   setLibrary(await source(LIBRARY, library), guardedWorker ? { worker: guardedWorker } : {});
@@ -37,17 +56,24 @@ const thread = () => {
   return script ? { worker: () => new Worker(script, { type: "module" }) } : {};
 };
 
-/**
- * Sets the author's module. The single-file page has only the module of imports, which includes the
- * author's.
- */
+const compiledImporter = () => compiled(IMPORTER, importer);
+
+/** The author's module. The single-file page has only the module of imports, which includes the author's. */
+export const compiledAuthor = () => (block(IMPORTER) === null ? compiled(AUTHOR, author) : compiledImporter());
+
+/** Sets the author's module. */
 export async function setAuthor() {
-  setAuthorLibrary(await source(block(IMPORTER) === null ? AUTHOR : IMPORTER, author), thread());
+  setAuthorLibrary(await compiledAuthor(), thread());
 }
 
 /** Sets the module of imports. */
 export async function setImporter() {
-  setImportLibrary(await source(IMPORTER, importer), thread());
+  setImportLibrary(await compiledImporter(), thread());
+}
+
+/** Starts the worker that reads recordings. */
+export function startReading() {
+  return readingWorker ? new Worker(readingWorker, { type: "module" }) : new Worker(new URL("./reading-worker.ts", import.meta.url), { type: "module" });
 }
 
 async function base64(stream: ReadableStream) {

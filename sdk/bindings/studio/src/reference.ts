@@ -1,11 +1,12 @@
 // What the present texture is compared with: itself as it was opened, and the recording it was fitted to.
 
 import { computed, effect, signal } from "@preact/signals";
-import { open, type MakeOptions, type RecordedLoop, type RecordedSpectrum, type Texture } from "htex";
+import { open, type FitReport, type MakeOptions, type RecordedLoop, type Texture } from "htex";
 
 import { author } from "./author.ts";
 
-import { origin } from "./state.ts";
+import { isLevelKnown } from "./level.ts";
+import { fail, origin } from "./state.ts";
 import { toDecibels } from "./shaping/spec.ts";
 import { pilotForce, pilotSpeed } from "./motion.ts";
 
@@ -35,13 +36,13 @@ effect(() => {
   }, () => {});
 });
 
-/** The recordings of the texture that was fitted here, with their spectra and conditions; of the bytes that were fitted. */
+/** The recordings of the texture that was fitted here, with what was measured; of the bytes that were fitted. */
 export interface RecordedWork {
   readonly bytes: Uint8Array;
   readonly names: readonly string[];
   /** Makes the loops of the recordings, as they were read for the fit. */
-  readonly loops: () => readonly RecordedLoop[];
-  readonly spectra: readonly RecordedSpectrum[];
+  readonly loops: () => Promise<readonly RecordedLoop[]>;
+  readonly report: FitReport;
   readonly conditions: readonly { speed: number | null; force: number | null }[];
 }
 export const recordedWork = signal<RecordedWork | null>(null);
@@ -52,12 +53,20 @@ export const presentWork = computed(() => {
   return work && origin.value?.bytes === work.bytes ? work : null;
 });
 
-/** The recordings as sound; they are read when one is first heard. */
-const loops = computed(() => presentWork.value?.loops() ?? []);
+/** The recordings as sound, once they are read. */
+const loops = signal<readonly RecordedLoop[]>([]);
 
-/** The loop of a recording of the present piece of work. */
-export function recordedLoop(name: string): RecordedLoop | null {
-  return loops.value.find(({ recording }) => recording === name) ?? null;
+effect(() => {
+  const work = presentWork.value;
+  loops.value = [];
+  work?.loops().then((read) => {
+    if (presentWork.peek() === work) loops.value = read;
+  }, fail);
+});
+
+/** The loop of a recording of the present piece of work; undefined until it is read, null if there is no recording. */
+export function recordedLoop(name: string): RecordedLoop | null | undefined {
+  return presentWork.value && loops.value.find(({ recording }) => recording === name);
 }
 
 /** The condition nearest to a motion. */
@@ -69,7 +78,7 @@ function conditionAt({ conditions }: Texture, speed: number, force: number) {
   return { speed: known(found?.speed), force: known(found?.force) };
 }
 
-function nearestRecorded({ spectra, conditions }: RecordedWork, speed: number, force: number): Drawn | null {
+function nearestRecorded({ report: { spectra }, conditions }: RecordedWork, speed: number, force: number): Drawn | null {
   const far = (a: number | null, b: number) => (a === null || a <= 0 ? 0 : Math.abs(Math.log(b / a)));
   const distance = conditions.map((condition) => far(condition.speed, speed) + far(condition.force, force));
   const found = spectra[distance.indexOf(Math.min(...distance))];
@@ -86,7 +95,8 @@ const openedDrawn = computed<Drawn | null>(() => {
 /** The magnitudes at which a finger begins to feel a sinusoid. */
 const thresholdDrawn = computed<Drawn | null>(() => {
   const [made, now] = [author.value, opened.value];
-  if (!made || !now) return null;
+  // It is at a level, which the texture may not have.
+  if (!made || !now || !isLevelKnown(now.texture)) return null;
   const quantity = now.texture.quantity as NonNullable<MakeOptions["quantity"]>;
   return { hz: HZ, db: Array.from(made.threshold(HZ, { quantity }), toDecibels) };
 });

@@ -38,7 +38,7 @@ async function openLast() {
 
 async function openFirst() {
   const first = items.peek().find(({ name }) => name === FIRST) ?? items.peek()[0];
-  if (first) await begin(first.bytes, `open ${first.name}`, first.model);
+  if (first) await begin(first.bytes, `open ${first.name}`);
 }
 
 function autosave() {

@@ -2,6 +2,7 @@ declare module "virtual:workers" {
   /** Scripts as `data:` addresses, in the page of one file; undefined where they are files. */
   export const authorWorker: string | undefined;
   export const guardedWorker: string | undefined;
+  export const readingWorker: string | undefined;
 }
 
 declare module "virtual:modules" {

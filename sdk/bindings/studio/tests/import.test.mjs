@@ -151,12 +151,12 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
     const page = await openStudio(browser, FILE, { viewport, hasTouch: viewport.width < 500, reducedMotion: "reduce" });
     await page.evaluate(AXE);
     for (const name of ["taps.ahap", "row.png"]) await drop(page, name);
-    await page.getByRole("form", { name: "Import row.png" }).waitFor();
+    await page.getByRole("form", { name: "Import 2 files" }).waitFor();
     await page.waitForTimeout(400);
     const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
     assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`), []);
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= viewport.width);
-    const heights = await page.locator(".fields :is(input, select), .imports button").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().height));
+    const heights = await page.locator(".fields :is(input, select), .imports button, .files .check").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().height));
     assert.ok(viewport.width > 500 || heights.every((height) => height >= 43.5), String(heights));
     const fields = await page.locator(".fields :is(input, select)").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().right));
     assert.ok(fields.every((right) => right <= viewport.width), String(fields));

@@ -65,7 +65,7 @@ async function sizes() {
   const index = await packed((name) => /^index.*\.(js|css)$/.test(name));
   print("page at its start: script (the package's, too) and style sheet", kB(index));
   print("screen of recordings, when it is first shown (uPlot)", kB(await packed((name) => /^record.*\.(js|css)$/.test(name))));
-  print("worklet and workers", kB(await packed((name) => /^(processor|worker|author-worker).*\.js$/.test(name))));
+  print("worklet and workers", kB(await packed((name) => /^(processor|worker|author-worker|reading-worker).*\.js$/.test(name))));
   print("player module", kB(await packed((name) => /^htex-(?!author|import).*\.wasm$/.test(name))));
   print("author module", kB(await packed((name) => /^htex-author.*\.wasm$/.test(name))));
   print("module of imports", kB(await packed((name) => /^htex-import.*\.wasm$/.test(name))));

@@ -102,3 +102,11 @@ export function samplesOf(wav) {
   // Chunks with the licence and the author may follow.
   return new Float32Array(wav.buffer.slice(wav.byteOffset + at, wav.byteOffset + at + wav.readUInt32LE(at - 4)));
 }
+
+/** Drops files or folders of the disk on the page, as a hand does. */
+export async function dropPaths(page, paths, { x = 400, y = 300 } = {}) {
+  const session = await page.context().newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"]) await session.send("Input.dispatchDragEvent", { type, x, y, data });
+  await session.detach();
+}

@@ -154,10 +154,12 @@ export class Library extends Handle {
     return bytes;
   }
 
-  /** Selects the page in which entries are looked up. */
+  /** Selects the page in which entries are looked up, unless it is the selected page. */
   read(number, bytes) {
+    if (number === this.selected) return;
     const { core } = this;
     core.scope((take) => core.call("htex_index_read_page", this.id, number, core.put(take, bytes), bytes.length));
+    this.selected = number;
   }
 
   /**

@@ -4,8 +4,9 @@ import type { Felt } from "htex";
 
 import { author, theAuthor } from "../author.ts";
 import { both } from "../comparing.ts";
-import { fitted } from "../recordings.ts";
+import { isLevelKnown } from "../level.ts";
 import { pilotForce, pilotSpeed } from "../motion.ts";
+import { presentWork } from "../reference.ts";
 import { fail } from "../state.ts";
 
 /** The sentence for what is felt. */
@@ -16,10 +17,17 @@ export function words({ below_difference_threshold, below_if_sensitive, largest_
   return `A difference is felt: in the third octave where most is, ${largest_error_db.toFixed(1)} dB.${whole}`;
 }
 
+/** Why nothing can be said of what is felt: the full scale of a recording is not known. */
+function unknownLevel() {
+  const { a, b } = both.value;
+  const unknown = [a, b].find((side) => side && !isLevelKnown(side.texture));
+  return unknown ? `It is not known how strong ${unknown.texture.name} was as it was recorded. So nothing can be said of what is felt.` : null;
+}
+
 function difference() {
   const made = author.value;
   const { a, b } = both.value;
-  if (!made || !a || !b || a.loop || b.loop) return null;
+  if (!made || !a || !b || a.loop || b.loop || unknownLevel()) return null;
   const at = { speed: pilotSpeed.value, force: pilotForce.value };
   return made.felt({ texture: a.texture, model: a.model, at }, { texture: b.texture, model: b.model, at });
 }
@@ -50,14 +58,14 @@ function ofRecording() {
   const { a, b } = both.value;
   const [recorded, other] = a?.loop ? [a, b] : [b, a];
   if (!recorded?.loop || !other) return null;
-  const felt = fitted.value?.report.models.find(({ model }) => model === other.model && other.texture === recorded.texture && !other.loop)?.felt;
+  const felt = presentWork.value?.report.models.find(({ model }) => model === other.model && other.texture === recorded.texture && !other.loop)?.felt;
   return felt ? `${words(felt)} All recordings against the model as it was fitted, at the condition where most is felt.` : "What is felt between a recording and this side was not measured: choose a model of this texture as the other side.";
 }
 
 export function Difference() {
   if (!author.value) theAuthor().catch(fail);
   const found = difference();
-  const told = ofRecording();
+  const told = unknownLevel() ?? ofRecording();
   return (
     <div class="panel stack">
       <h2>What is felt of the difference</h2>

@@ -1,48 +1,35 @@
-// Models of a texture, by what is felt of the difference from what they were fitted to.
+// Models of a texture, the best first.
 
-import type { FeltError } from "htex";
+import type { FitReport } from "htex";
 
-import { words } from "./difference.tsx";
 import { fail } from "../state.ts";
+import { rankedBy } from "../ranking.ts";
 import { nameOf } from "../screens/shape.tsx";
 
-interface Fitted {
-  readonly model: string;
-  readonly bytes: number;
-  readonly felt: FeltError | null;
-}
-
-function told(error: FeltError | null, isRecorded: boolean) {
-  if (!error) return "not measured";
-  const own = isRecorded && error.within_repeatability ? " It is as near as the recording is to itself." : "";
-  return words(error) + own;
-}
-
 interface Props {
-  ranked: readonly string[];
-  models: readonly Fitted[];
+  report: Pick<FitReport, "ranked"> & { models: readonly Omit<FitReport["models"][number], "fit_ms">[] };
   /** Whether they were fitted to a touch, which another touch would differ from. */
   isRecorded: boolean;
+  /** Whether the level is one of what was recorded: only then is something said of what is felt. */
+  isLevelKnown?: boolean;
   onPad: (model: string) => Promise<void>;
 }
 
-export function RankedModels({ ranked, models, isRecorded, onPad }: Props) {
+export function RankedModels({ report, isRecorded, isLevelKnown = true, onPad }: Props) {
+  const { ranked, told } = rankedBy(report, isLevelKnown, isRecorded);
   return (
     <ol class="ranked">
-      {ranked.map((id, i) => {
-        const one = models.find(({ model }) => model === id);
-        return (
-          <li key={id}>
-            <div>
-              <b>{nameOf(id)}</b> <span class="soft small">{one?.bytes} bytes</span>
-              <p class="small">{told(one?.felt ?? null, isRecorded)}</p>
-            </div>
-            <button class={i === 0 ? "button strong" : "button"} onClick={() => onPad(id).catch(fail)}>
-              To the pad
-            </button>
-          </li>
-        );
-      })}
+      {ranked.map((id, i) => (
+        <li key={id}>
+          <div>
+            <b>{nameOf(id)}</b> <span class="soft small">{report.models.find(({ model }) => model === id)?.bytes} bytes</span>
+            <p class="small">{told(id)}</p>
+          </div>
+          <button class={i === 0 ? "button strong" : "button"} onClick={() => onPad(id).catch(fail)}>
+            To the pad
+          </button>
+        </li>
+      ))}
     </ol>
   );
 }

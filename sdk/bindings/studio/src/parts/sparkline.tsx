@@ -23,6 +23,11 @@ export function outline(texture: Texture, model: string): string {
   return `M0 ${HEIGHT}L${points.join("L")}L${WIDTH} ${HEIGHT}Z`;
 }
 
+/** The place of a spectrum that is not yet there. */
+export function NoSparkline() {
+  return <svg class="sparkline" aria-hidden="true" />;
+}
+
 export function Sparkline({ texture, model }: { texture: Texture; model: string }) {
   const path = useMemo(() => outline(texture, model), [texture, model]);
   return (

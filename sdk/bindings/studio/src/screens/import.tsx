@@ -1,12 +1,13 @@
-// Files of other haptic formats, in the screen of recordings: what they do not say is asked, and what was made of them is told.
+// Files of other haptic formats, in the screen of recordings: what they do not say is asked once for all, and what was made of them is told.
 
 import type { RecordedQuantity } from "htex";
+import type { ImportFormat } from "htex/import";
 
-import { actuators, done, importing, importWaiting, leaveOut, list, stop, toPad, waiting, type Done, type Given, type Waiting } from "../imports.ts";
+import { actuators, chooseWaiting, counted, done, given, importChosen, importing, leaveOut, list, stop, toPad, waiting, type Done, type Given, type Waiting } from "../imports.ts";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
-import { fail, screen } from "../state.ts";
+import { fail, present, screen } from "../state.ts";
 
 /** What a full scale may be of. */
 const QUANTITIES: readonly [RecordedQuantity, string][] = [
@@ -17,20 +18,19 @@ const QUANTITIES: readonly [RecordedQuantity, string][] = [
   ["displacement", "m of displacement"],
 ];
 
-type Said = Waiting["given"];
-
-function say(given: Said, change: Partial<Given>) {
+function say(change: Partial<Given>) {
   given.value = { ...given.peek(), ...change };
 }
 
-function Actuator({ own, given }: { own: string; given: Said }) {
+function Actuator({ format: { name, title, profile }, isOnly }: { format: ImportFormat; isOnly: boolean }) {
+  const { profiles } = given.value;
   return (
     <label class="field whole">
-      Its frequencies are positions in the range of
-      <select value={given.value.profile ?? own} onChange={(event) => say(given, { profile: event.currentTarget.value })}>
-        {actuators.value.map(({ name, title, low_hz, high_hz }) => (
-          <option key={name} value={name}>
-            {title}, {low_hz} to {high_hz} Hz
+      {isOnly ? "Its frequencies" : `The frequencies of ${title}`} are positions in the range of
+      <select value={profiles[name] ?? profile ?? ""} onChange={(event) => say({ profiles: { ...profiles, [name]: event.currentTarget.value } })}>
+        {actuators.value.map((actuator) => (
+          <option key={actuator.name} value={actuator.name}>
+            {actuator.title}, {actuator.low_hz} to {actuator.high_hz} Hz
           </option>
         ))}
       </select>
@@ -38,11 +38,11 @@ function Actuator({ own, given }: { own: string; given: Said }) {
   );
 }
 
-function Quantity({ given }: { given: Said }) {
+function Quantity() {
   return (
     <label class="field">
       Its unit
-      <select value={given.value.quantity ?? "lateral_force"} onChange={(event) => say(given, { quantity: event.currentTarget.value as RecordedQuantity })}>
+      <select value={given.value.quantity ?? "lateral_force"} onChange={(event) => say({ quantity: event.currentTarget.value as RecordedQuantity })}>
         {QUANTITIES.map(([name, words]) => (
           <option key={name} value={name}>
             {words}
@@ -53,24 +53,30 @@ function Quantity({ given }: { given: Said }) {
   );
 }
 
-function Fields({ one: { format, asks, given } }: { one: Waiting }) {
+/** What stands for full scale: 1, or white in an image. */
+function fullScaleOf(formats: readonly ImportFormat[]) {
+  const words = [formats.some(({ fitted }) => fitted) ? "1" : "", formats.some(({ fitted }) => !fitted) ? "white" : ""].filter(Boolean);
+  return `How strong ${words.join(" or ")} is`;
+}
+
+function Fields({ all, formats }: { all: readonly Waiting[]; formats: readonly ImportFormat[] }) {
   const { full_scale, speed_mm_s, force_n, pitch_mm, license } = given.value;
-  const number = (name: "full_scale" | "speed_mm_s" | "force_n" | "pitch_mm") => (value: number | null) => say(given, { [name]: value ?? undefined });
-  const isPitchAsked = asks.some(({ setting }) => setting === "pitch_mm");
+  const number = (name: "full_scale" | "speed_mm_s" | "force_n" | "pitch_mm") => (value: number | null) => say({ [name]: value ?? undefined });
+  const isPitchAsked = all.some(({ asks }) => asks.some(({ setting }) => setting === "pitch_mm"));
   return (
     <div class="fields">
-      <NumberField label={format.fitted ? "How strong 1 is" : "How strong white is"} value={full_scale} isRequired onValue={number("full_scale")} />
-      <Quantity given={given} />
+      <NumberField label={fullScaleOf(formats)} value={full_scale} isRequired onValue={number("full_scale")} />
+      <Quantity />
       <NumberField label="Speed, mm/s" value={speed_mm_s} isRequired onValue={number("speed_mm_s")} />
       <NumberField label="Force, N" value={force_n} isRequired onValue={number("force_n")} />
-      {format.settings.includes("pitch_mm") && (
+      {formats.some(({ settings }) => settings.includes("pitch_mm")) && (
         <NumberField label="mm per pixel" value={pitch_mm} isRequired={isPitchAsked} placeholder={isPitchAsked ? undefined : "as the file states"} onValue={number("pitch_mm")} />
       )}
       <label class="field">
         Licence
-        <input type="text" placeholder="none stated" value={license} onInput={(event) => say(given, { license: event.currentTarget.value })} />
+        <input type="text" placeholder="none stated" value={license} onInput={(event) => say({ license: event.currentTarget.value })} />
       </label>
-      {format.profile && <Actuator own={format.profile} given={given} />}
+      {formats.map((format) => format.profile && <Actuator key={format.name} format={format} isOnly={formats.length === 1} />)}
     </div>
   );
 }
@@ -83,33 +89,64 @@ function Kept({ format: { title, keeps, loses } }: Pick<Waiting, "format">) {
   );
 }
 
-function Asking({ one }: { one: Waiting }) {
-  const isRead = importing.value === one.file.name;
+/** The files of a form; each can be left for other numbers. */
+function Files({ all }: { all: readonly Waiting[] }) {
+  return (
+    <ul class="files">
+      {all.map((one) => (
+        <li key={one.file.name}>
+          <label class="check">
+            <input type="checkbox" checked={one.isChosen} onChange={(event) => chooseWaiting(one, event.currentTarget.checked)} />
+            <bdi>{one.file.name}</bdi>
+          </label>
+          {one.problem && <p class="problem small">{one.problem}</p>}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+/** One form for all files that wait. */
+function Asking({ all }: { all: readonly Waiting[] }) {
+  const chosen = all.filter(({ isChosen }) => isChosen);
+  const formats = [...new Map((chosen.length > 0 ? chosen : all).map(({ format }) => [format.name, format])).values()];
+  const words = [...new Set(chosen.flatMap(({ asks }) => asks.map((one) => one.words)))];
+  const [first] = all;
+  const isOnly = all.length === 1;
+  const name = isOnly && first ? first.file.name : counted(all.length, "file");
+  const isBusy = importing.value !== null;
   return (
     <form
       class="panel stack"
-      aria-label={`Import ${one.file.name}`}
+      aria-label={`Import ${name}`}
       onSubmit={(event) => {
         event.preventDefault();
-        importWaiting(one).catch(fail);
+        importChosen().catch(fail);
       }}
     >
-      <h2>{one.file.name}</h2>
-      <Kept format={one.format} />
+      <h2>
+        <bdi>{name}</bdi>
+      </h2>
+      {!isOnly && <Files all={all} />}
+      {formats.map((format) => (
+        <Kept key={format.name} format={format} />
+      ))}
       <p class="small" role="status">
-        The file does not say {list(one.asks.map(({ words }) => words))}.
+        {chosen.length === 0 ? "Choose the files to import." : `${isOnly ? "The file does" : "The files do"} not say ${list(words)}.`}
       </p>
-      <Fields one={one} />
+      <Fields all={chosen} formats={formats} />
       <div class="row">
-        <button type="submit" class="button strong" disabled={importing.value !== null}>
-          Import
+        <button type="submit" class="button strong" disabled={isBusy || chosen.length === 0}>
+          {isOnly || chosen.length === 0 ? "Import" : `Import ${counted(chosen.length, "file")}`}
         </button>
-        <button type="button" class="button" onClick={() => leaveOut(one)}>
-          Leave it out
+        <button type="button" class="button" disabled={isBusy} onClick={() => leaveOut(all)}>
+          {isOnly ? "Leave it out" : "Leave all out"}
         </button>
-        {isRead && (
+        {isBusy && (
           <>
-            <span class="small soft" role="status">Importing…</span>
+            <span class="small soft" role="status">
+              Importing <bdi>{importing.value}</bdi>…
+            </span>
             <button type="button" class="button" onClick={stop}>Stop</button>
           </>
         )}
@@ -118,35 +155,45 @@ function Asking({ one }: { one: Waiting }) {
   );
 }
 
-function Told({ one }: { one: Done }) {
+async function shape(one: Done) {
+  if (present.peek()?.bytes !== one.bytes) await toPad(one);
+  screen.value = "shape";
+}
+
+function Told({ one, isOnly }: { one: Done; isOnly: boolean }) {
   const { file, format, report } = one;
   return (
-    <article class="panel stack">
-      <h2>{file.name}</h2>
-      <Kept format={format} />
-      <ul class="findings">
-        <Notices notices={report.warnings} kind="Warning" />
-        <Notices notices={report.notes} kind="Note" />
-      </ul>
-      {format.fitted && <RankedModels ranked={report.ranked} models={report.models} isRecorded={false} onPad={(model) => toPad(one, model)} />}
-      <div class="row">
-        <button class="button" onClick={() => (screen.value = "shape")}>
-          Shape it
-        </button>
+    <details class="panel" open={isOnly}>
+      <summary>
+        <h2>
+          <bdi>{file.name}</bdi>
+        </h2>
+      </summary>
+      <div class="stack">
+        <Kept format={format} />
+        <ul class="findings">
+          <Notices notices={report.warnings} kind="Warning" />
+          <Notices notices={report.notes} kind="Note" />
+        </ul>
+        {format.fitted && <RankedModels report={report} isRecorded={false} onPad={(model) => toPad(one, model)} />}
+        <div class="row">
+          <button class="button" onClick={() => shape(one).catch(fail)}>
+            Shape it
+          </button>
+        </div>
       </div>
-    </article>
+    </details>
   );
 }
 
 export function Imports() {
-  if (waiting.value.length + done.value.length === 0) return null;
+  const [asked, told] = [waiting.value, done.value];
+  if (asked.length + told.length === 0) return null;
   return (
     <div class="stack imports">
-      {waiting.value.map((one) => (
-        <Asking key={one.file.name} one={one} />
-      ))}
-      {done.value.map((one) => (
-        <Told key={one.file.name} one={one} />
+      {asked.length > 0 && <Asking all={asked} />}
+      {told.map((one) => (
+        <Told key={one.file.name} one={one} isOnly={told.length === 1} />
       ))}
     </div>
   );

@@ -1,62 +1,23 @@
 // Record: from recordings to a texture.
 
 import { useEffect, useRef } from "preact/hooks";
-import type { Columns, Finding, Notice } from "htex";
+import type { Columns, Finding, Notice, RecordedQuantity } from "htex";
 
 import { author } from "../author.ts";
+import { QUANTITIES, unitOf } from "../columns.ts";
+import { ColumnTable } from "../parts/column-table.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
+import { ToSettings } from "../parts/to-settings.tsx";
 import { Waveform } from "../parts/waveform.tsx";
 import { READ, take } from "../drop.ts";
 import { done, waiting } from "../imports.ts";
-import { abort, canFit, fitAll, fitted, force, isReading, keepReading, license, maps, progress, rate, reads, recordings, speed, toPad, type Read } from "../recordings.ts";
+import { abort, asksScale, canFit, fitAll, fitted, haltReading, isFitOld, isLevelKnown, isStopped, keepReading, license, progress, read, reading, reads, recordings, state, stated, stateMotion, stateQuantity, toPad, type Read, type Stated } from "../recordings.ts";
 import { fail } from "../state.ts";
 import { Imports } from "./import.tsx";
 import { nameOf } from "./shape.tsx";
-
-const ROLES = ["", "lateral", "lateral_y", "normal", "time", "x", "y", "speed"];
-
-/** The map with another role of a column. */
-function withRole({ columns }: Columns, index: number, role: string) {
-  const all = columns.map((column, i) => ({ ...column, role: i === index ? role || null : column.role }));
-  return all.filter((column) => column.role).map(({ role: own, name, scale }) => `${own}=${name}${scale === 1 ? "" : `:${scale}`}`).join(",");
-}
-
-function ColumnTable({ name, columns }: { name: string; columns: Columns }) {
-  const roles = [...new Set([...ROLES, ...columns.columns.map(({ role }) => role ?? "")])];
-  return (
-    <div class="scroll-x">
-      <table class="table">
-        <thead>
-          <tr>
-            <th scope="col">Column</th>
-            <th scope="col">Is read as</th>
-            <th scope="col">First numbers</th>
-          </tr>
-        </thead>
-        <tbody>
-          {columns.columns.map((column, i) => (
-            <tr key={column.name}>
-              <th scope="row">{column.name}</th>
-              <td>
-                <select aria-label={`Role of ${column.name}`} value={column.role ?? ""} onChange={(event) => (maps.value = { ...maps.peek(), [name]: withRole(columns, i, event.currentTarget.value) })}>
-                  {roles.map((role) => (
-                    <option key={role} value={role}>
-                      {role || "not read"}
-                    </option>
-                  ))}
-                </select>
-              </td>
-              <td class="soft">{column.first.slice(0, 4).map((x) => Number(x.toPrecision(4))).join(", ")}</td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
-    </div>
-  );
-}
 
 const SEVERITY = { error: "Error", warning: "Warning", info: "Note" };
 
@@ -70,25 +31,49 @@ function Found({ finding }: { finding: Finding }) {
         </summary>
         <p class="small">{more?.explanation}</p>
         {more?.fix && <p class="small">What to do: {more.fix}</p>}
+        <ToSettings names={finding.settings} />
         <p class="small soft">{finding.code}</p>
       </details>
     </li>
   );
 }
 
-/** Notices that no finding tells. */
+/** Notices that no finding tells. That the scale is assumed is not told to those who have said that they do not know it. */
 function beside(notices: Notice[], findings: Finding[]) {
-  return notices.filter(({ text }) => !findings.some(({ code }) => text.includes(code)));
+  const isAsked = ({ settings }: Notice) => asksScale.value && settings.includes("scale");
+  return notices.filter((notice) => !isAsked(notice) && !findings.some(({ code }) => notice.text.includes(code)));
 }
 
-function OneRead({ read: { recording, columns, processed, problem } }: { read: Read }) {
+/** They unfold where they are wanted, and do not fold while they are corrected. */
+function ColumnsOf({ columns, isWanted }: { columns: Columns; isWanted: boolean }) {
+  const place = useRef<HTMLDetailsElement>(null);
+  useEffect(() => {
+    if (isWanted && place.current) place.current.open = true;
+  }, [isWanted]);
+  return (
+    <details ref={place}>
+      <summary>
+        <h2>Columns</h2>
+      </summary>
+      <ColumnTable columns={columns} />
+    </details>
+  );
+}
+
+function OneRead({ read: { recording, columns, processed, problem }, index }: { read: Read; index: number }) {
+  const motion = stated.value.motions[index];
   return (
     <article class="panel stack">
-      <h2>{recording.name}</h2>
+      <h2>
+        <bdi>{recording.name}</bdi>
+      </h2>
       {problem && (
-        <p class="problem">
-          <Icon name="warn" /> {problem}
-        </p>
+        <div>
+          <p class="problem">
+            <Icon name="warn" /> {problem}
+          </p>
+          <ToSettings names={["map", "quantity", "rate_hz"]} />
+        </div>
       )}
       {processed && (
         <>
@@ -102,20 +87,79 @@ function OneRead({ read: { recording, columns, processed, problem } }: { read: R
             {processed.findings.map((finding) => (
               <Found key={finding.code} finding={finding} />
             ))}
-            <Notices notices={beside(processed.warnings, processed.findings)} kind="Warning" />
-            <Notices notices={beside(processed.notes, processed.findings)} kind="Note" />
+            <Notices notices={beside(processed.warnings, processed.findings)} kind="Warning" isAdvised />
+            <Notices notices={beside(processed.notes, processed.findings)} kind="Note" isAdvised />
           </ul>
         </>
       )}
-      {columns && (
-        <details open={problem !== null}>
-          <summary>
-            <h2>Columns</h2>
-          </summary>
-          <ColumnTable name={recording.name} columns={columns} />
-        </details>
-      )}
+      <div class="fields">
+        <NumberField label="Speed, mm/s" setting="speed_mm_s" value={motion?.speed} placeholder="as recorded" onValue={(speed) => stateMotion(index, { speed })} />
+        <NumberField label="Force, N" setting="force_n" value={motion?.force} placeholder="as recorded" onValue={(force) => stateMotion(index, { force })} />
+      </div>
+      {columns && <ColumnsOf columns={columns} isWanted={problem !== null} />}
     </article>
+  );
+}
+
+/** What full scale stands for: a number, or nobody knows. */
+function FullScale() {
+  const { isScaleKnown, scale, quantity } = stated.value;
+  return (
+    <fieldset class="question">
+      <legend>How loud is full scale?</legend>
+      <label class="check">
+        <input type="radio" name="full-scale" checked={!isScaleKnown} onChange={() => state({ isScaleKnown: false })} /> I do not know
+      </label>
+      <label class="check">
+        <input type="radio" name="full-scale" data-setting="scale" checked={isScaleKnown} onChange={() => state({ isScaleKnown: true })} /> I know:
+      </label>
+      {isScaleKnown && <NumberField label={`Full scale is, ${unitOf(quantity)}`} value={scale} min={null} isRequired onValue={(value) => state({ scale: value })} />}
+      {!isLevelKnown.value && <p class="small soft">The page then compares shapes, and says nothing of what a finger feels. The texture states that its level is not known.</p>}
+    </fieldset>
+  );
+}
+
+const SEGMENTS: readonly [Stated["segments"], string][] = [
+  ["auto", "strokes, or windows where there are few"],
+  ["sweeps", "the middles of strokes"],
+  ["windows", "even windows"],
+];
+
+function Settings() {
+  const { quantity, rate, from, to, segments } = stated.value;
+  return (
+    <>
+      <div class="fields">
+        <label class="field">
+          What was recorded
+          <select data-setting="quantity" value={quantity} onChange={(event) => stateQuantity(event.currentTarget.value as RecordedQuantity)}>
+            {QUANTITIES.map(({ id, name, unit }) => (
+              <option key={id} value={id}>
+                {name}, {unit}
+              </option>
+            ))}
+          </select>
+        </label>
+        <NumberField label="Rate, Hz" setting="rate_hz" value={rate} placeholder="as recorded" onValue={(value) => state({ rate: value })} />
+        <NumberField label="Read from, s" setting="from_s" value={from} placeholder="the beginning" onValue={(value) => state({ from: value })} />
+        <NumberField label="Read to, s" setting="to_s" value={to} placeholder="the end" onValue={(value) => state({ to: value })} />
+        <label class="field">
+          What is read
+          <select data-setting="segments" value={segments} onChange={(event) => state({ segments: event.currentTarget.value as Stated["segments"] })}>
+            {SEGMENTS.map(([id, name]) => (
+              <option key={id} value={id}>
+                {name}
+              </option>
+            ))}
+          </select>
+        </label>
+        <label class="field">
+          Licence
+          <input type="text" value={license.value} onInput={(event) => (license.value = event.currentTarget.value)} />
+        </label>
+      </div>
+      {asksScale.value && <FullScale />}
+    </>
   );
 }
 
@@ -123,15 +167,7 @@ function FitPanel() {
   const now = progress.value;
   return (
     <div class="panel stack">
-      <div class="columns">
-        <NumberField label="Speed, mm/s" value={speed.value} placeholder="as recorded" onValue={(value) => (speed.value = value)} />
-        <NumberField label="Force, N" value={force.value} placeholder="as recorded" onValue={(value) => (force.value = value)} />
-        <NumberField label="Rate, Hz" value={rate.value} placeholder="as recorded" onValue={(value) => (rate.value = value)} />
-        <label class="field">
-          Licence
-          <input type="text" value={license.value} onInput={(event) => (license.value = event.currentTarget.value)} />
-        </label>
-      </div>
+      <Settings />
       <div class="row">
         <button class="button strong" disabled={!canFit.value || now !== null} onClick={() => fitAll().catch(fail)}>
           Fit all models
@@ -154,17 +190,45 @@ function Ranked() {
   const { report } = result;
   return (
     <div class="panel stack">
-      <h2>Models, by what is felt</h2>
-      <RankedModels ranked={report.ranked} models={report.models} isRecorded onPad={toPad} />
+      <h2>Models, by {result.isLevelKnown ? "what is felt" : "their shape"}</h2>
+      {isFitOld.value && <p class="small" role="status">They were fitted before the settings were changed. Fit again to use the new ones.</p>}
+      <RankedModels report={report} isRecorded isLevelKnown={result.isLevelKnown} onPad={toPad} />
       <ul class="findings">
-        <Notices notices={report.warnings} kind="Warning" />
-        <Notices notices={report.notes} kind="Note" />
+        <Notices notices={beside(report.warnings, [])} kind="Warning" isAdvised />
+        <Notices notices={beside(report.notes, [])} kind="Note" isAdvised />
         {report.skipped.map(({ model, reason }) => (
           <li key={model} class="finding">
             <b>{nameOf(model)} is left out:</b> {reason}
           </li>
         ))}
       </ul>
+    </div>
+  );
+}
+
+/** How far the reading is, or that it was stopped. */
+function Reading() {
+  const now = reading.value;
+  if (!now) {
+    if (!isStopped.value) return null;
+    return (
+      <div class="row">
+        <button class="button" onClick={() => read().catch(fail)}>
+          Read the recordings
+        </button>
+      </div>
+    );
+  }
+  return (
+    <div class="row">
+      <progress max={now.of} value={now.of > 1 ? now.done : undefined} aria-label="Progress of the reading" />
+      <span role="status">
+        Reading <bdi>{now.name}</bdi>
+        {now.of > 1 && `, ${now.done + 1} of ${now.of}`}
+      </span>
+      <button class="button" onClick={haltReading}>
+        Stop reading
+      </button>
     </div>
   );
 }
@@ -189,9 +253,9 @@ export function Record() {
         <p class="empty" hidden={waiting.value.length + done.value.length > 0}>No recording is open. A good one is ten seconds of a finger that slides to and fro, with the lateral force and, if they are known, the normal force and the position.</p>
       ) : (
         <div class="stack">
-          {isReading.value && <p role="status">Reading…</p>}
-          {reads.value.map((one) => (
-            <OneRead key={one.recording.name} read={one} />
+          <Reading />
+          {reads.value.map((one, i) => (
+            <OneRead key={i} read={one} index={i} />
           ))}
           <FitPanel />
           <Ranked />

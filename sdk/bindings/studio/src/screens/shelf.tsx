@@ -1,16 +1,17 @@
 // The shelf: textures to touch, and to begin with.
 
+import { batch, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
 import { endAudition, onLook } from "../audition.ts";
 import { OPENED, take } from "../drop.ts";
 import { Icon } from "../parts/icons.tsx";
-import { Sparkline } from "../parts/sparkline.tsx";
+import { NoSparkline, Sparkline } from "../parts/sparkline.tsx";
 import { chosenTag, forget, found, items, search, tags, type Item } from "../shelf.ts";
 import { begin, fail, present, say, screen } from "../state.ts";
 
 async function choose(item: Item) {
-  await begin(item.bytes, `open ${item.name}`, item.model);
+  await begin(item.bytes, `open ${item.name}`);
   say(`${item.name} is on the pad. Slide over it, or go on to Shape.`);
 }
 
@@ -30,11 +31,13 @@ function arrows(event: KeyboardEvent) {
 
 function Card({ item }: { item: Item }) {
   const isHere = present.value?.bytes === item.bytes;
-  const looks = onLook(() => ({ texture: item.texture, model: item.model, own: true }));
+  const opened = item.opened.value;
+  const looks = onLook(() => item.open().then((now) => ({ ...now, own: true }), () => null));
+  useEffect(item.see, [item]);
   return (
     <li>
       <button class={isHere ? "card here" : "card"} aria-pressed={isHere} {...looks} onClick={() => choose(item).catch(fail)} onDblClick={() => (screen.value = "shape")}>
-        <Sparkline texture={item.texture} model={item.model} />
+        {opened ? <Sparkline {...opened} /> : <NoSparkline />}
         <span class="card-name">{item.name}</span>
 
         <span class="card-tags">{isHere ? "● on the pad" : item.tags.slice(0, 3).join(" · ")}</span>
@@ -61,8 +64,65 @@ function Files() {
   );
 }
 
+/** Cards that are there at once, and that are added where the end of them comes near. */
+const PORTION = 36;
+const shown = signal(PORTION);
+/** How near, in CSS pixels. */
+const NEAR_PX = 800;
+
+/** Another search begins with its first cards. */
+function narrow(change: () => void) {
+  batch(() => {
+    shown.value = PORTION;
+    change();
+  });
+}
+
+function Cards() {
+  const end = useRef<HTMLLIElement>(null);
+  const [all, count] = [found.value, shown.value];
+  const isMore = all.length > count;
+  useEffect(() => {
+    const element = end.current;
+    if (!element) return;
+    const more = (seen: IntersectionObserverEntry[]) => seen.some(({ isIntersecting }) => isIntersecting) && (shown.value = count + PORTION);
+    const observer = new IntersectionObserver(more, { root: element.closest(".screen"), rootMargin: `${NEAR_PX}px` });
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, [count, isMore]);
+  return (
+    <ul class="cards" onKeyDown={arrows}>
+      {all.slice(0, count).map((item) => (
+        <Card key={item.id} item={item} />
+      ))}
+      {isMore && <li key="end" ref={end} class="cards-end" aria-hidden="true" />}
+    </ul>
+  );
+}
+
+/** Most tags that are offered; a search finds the others. */
+const MOST_TAGS = 24;
+
+function Tags() {
+  const chosen = chosenTag.value;
+  const offered = tags.value.filter((tag, i) => i < MOST_TAGS || tag === chosen);
+  return (
+    <div class="chips" role="group" aria-label="Tags">
+      {offered.map((tag) => (
+        <button key={tag} class="chip" aria-pressed={chosen === tag} onClick={() => narrow(() => (chosenTag.value = chosen === tag ? null : tag))}>
+          {tag}
+        </button>
+      ))}
+    </div>
+  );
+}
+
 export function Shelf() {
-  useEffect(() => endAudition, []);
+  const leave = () => {
+    endAudition();
+    shown.value = PORTION;
+  };
+  useEffect(() => leave, []);
   return (
     <section aria-labelledby="shelf-title">
       <header class="screen-head">
@@ -75,21 +135,11 @@ export function Shelf() {
       <div class="filters">
         <label class="search">
           <Icon name="search" />
-          <input type="search" placeholder="Search" aria-label="Search textures" value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
+          <input type="search" placeholder="Search" aria-label="Search textures" value={search.value} onInput={(event) => narrow(() => (search.value = event.currentTarget.value))} />
         </label>
-        <div class="chips" role="group" aria-label="Tags">
-          {tags.value.map((tag) => (
-            <button key={tag} class="chip" aria-pressed={chosenTag.value === tag} onClick={() => (chosenTag.value = chosenTag.value === tag ? null : tag)}>
-              {tag}
-            </button>
-          ))}
-        </div>
+        <Tags />
       </div>
-      <ul class="cards" onKeyDown={arrows}>
-        {found.value.map((item) => (
-          <Card key={item.id} item={item} />
-        ))}
-      </ul>
+      <Cards />
       {items.value.length > 0 && found.value.length === 0 && <p class="empty">No texture has these words. Try fewer.</p>}
     </section>
   );

@@ -26,6 +26,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "page.test.mjs",
             "import.test.mjs",
             "opening.test.mjs",
+            "history.test.mjs",
             "served.test.mjs",
             "firefox.test.mjs",
         ])

@@ -43,13 +43,27 @@ function Tabs() {
 
 function Notice() {
   const now = notice.value;
+  const undo = useRef<HTMLButtonElement>(null);
+  useEffect(() => {
+    // What was pressed may be gone, such as the button on a card: the keyboard goes on here.
+    if (document.activeElement === document.body) undo.current?.focus({ preventScroll: true });
+  }, [now]);
+  const back = () => {
+    document.getElementById("screen")?.focus({ preventScroll: true });
+    Promise.resolve(now?.undo?.()).catch(fail);
+  };
   return (
     <div class={`notice ${now?.kind ?? ""}`} role="status" aria-live="polite">
       {now && (
         <>
           {now.kind === "bad" && <Icon name="warn" />}
           {now.kind === "good" && <Icon name="check" />}
-          <span>{now.text}</span>
+          <span class="name">{now.text}</span>
+          {now.undo && (
+            <button class="button" ref={undo} onClick={back}>
+              Undo
+            </button>
+          )}
           <button class="icon-button" aria-label="Close this message" onClick={() => (notice.value = null)}>
             <Icon name="close" />
           </button>

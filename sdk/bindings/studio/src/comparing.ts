@@ -4,6 +4,7 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import type { RecordedLoop, Texture } from "htex";
 
 import { tried } from "./engine.ts";
+import { isolated } from "./names.ts";
 import { opened, presentWork, recordedLoop } from "./reference.ts";
 import { motion } from "./shadow.ts";
 import { items } from "./shelf.ts";
@@ -34,8 +35,8 @@ const RECORDING = "recording ";
 export const choices = computed(() => {
   const models = texture.value?.models ?? [];
   const own = models.length > 1 ? models.map((id) => ({ id: `model ${id}`, name: `This texture by ${id.replace("org.htex.", "")}` })) : [];
-  const recorded = presentWork.value?.names.map((name) => ({ id: RECORDING + name, name: `The recording ${name}` })) ?? [];
-  return [{ id: "present", name: `${present.value?.name ?? "The present texture"}, now` }, { id: "opened", name: "As it was opened" }, ...recorded, ...own, ...items.value.map(({ id, name }) => ({ id, name: `Shelf: ${name}` }))];
+  const recorded = presentWork.value?.names.map((name) => ({ id: RECORDING + name, name: `The recording ${isolated(name)}` })) ?? [];
+  return [{ id: "present", name: `${present.value ? isolated(present.value.name) : "The present texture"}, now` }, { id: "opened", name: "As it was opened" }, ...recorded, ...own, ...items.value.map(({ id, name }) => ({ id, name: `Shelf: ${isolated(name)}` }))];
 });
 
 function played(id: string): Played | null {

@@ -3,9 +3,10 @@
 import { Library } from "htex";
 
 import { EXTENSIONS, isImported, takeImports } from "./imports.ts";
+import { isolated } from "./names.ts";
 import { told, withProgress, type Problem, type Work } from "./opening.ts";
 import { openRecordings } from "./recordings.ts";
-import { addAll, type Source } from "./shelf.ts";
+import { addAll, lostText, type Source } from "./shelf.ts";
 import { begin, fail, say, screen } from "./state.ts";
 
 async function bytesOf(file: File) {
@@ -67,15 +68,15 @@ async function takeTextures(files: readonly File[], libraryFiles: readonly File[
   }));
   libraries.forEach(({ library }) => library.free());
   const [first] = added;
-  if (first && files.length > 0) await begin(first.bytes, `open ${files[0]?.name}`);
-  return { problems: [...failed, ...problems], text: textOf() };
+  if (first && files.length > 0) await begin(first.bytes, `open ${isolated(files[0]?.name ?? "")}`);
+  return { problems: [...failed, ...problems], text: textOf(), lost: lostText(added) };
 
   function textOf() {
     if (isStopped) return `Stopped: ${number(added.length)} of ${number(count)} textures are on the shelf.`;
     if (!first) return "";
-    if (added.length === 1) return `${first.name} is on the shelf${files.length > 0 ? " and on the pad" : ""}.`;
+    if (added.length === 1) return `${isolated(first.name)} is on the shelf${files.length > 0 ? " and on the pad" : ""}.`;
     const [only] = libraries;
-    return `${number(added.length)} textures ${files.length === 0 && only && libraries.length === 1 ? `of ${only.name} ` : ""}are on the shelf.`;
+    return `${number(added.length)} textures ${files.length === 0 && only && libraries.length === 1 ? `of ${isolated(only.name)} ` : ""}are on the shelf.`;
   }
 }
 
@@ -86,10 +87,12 @@ async function takeAll(files: readonly File[], problems: Problem[]) {
   const taken = files.filter(({ name }) => isRecording(name));
   const others = files.filter(({ name }) => isImported(name));
   const sentences: string[] = [];
+  let lost = "";
   if (textures.length + libraries.length > 0) {
-    const { problems: own, text } = await takeTextures(textures, libraries);
-    problems.push(...own);
-    sentences.push(text);
+    const opened = await takeTextures(textures, libraries);
+    problems.push(...opened.problems);
+    sentences.push(opened.text);
+    lost = opened.lost;
   }
   if (taken.length > 0) {
     const all = await named(taken, problems);
@@ -99,16 +102,17 @@ async function takeAll(files: readonly File[], problems: Problem[]) {
     }
   } else if (textures.length + libraries.length + others.length === 0 && files.length > 0) {
     const known = EXTENSIONS.map((extension) => `.${extension}`).join(", ");
-    throw new Error(`${files[0]?.name} is no texture (.htex), library (.htexlib), recording (CSV, WAV, FLAC, NPY) or file of another haptic format (${known}).`);
+    throw new Error(`${isolated(files[0]?.name ?? "")} is no texture (.htex), library (.htexlib), recording (CSV, WAV, FLAC, NPY) or file of another haptic format (${known}).`);
   }
   if (others.length > 0) {
     const all = await named(others, problems);
-    const { problems: own, text } = await withProgress(all.length, (work: Work) => takeImports(all, work));
-    problems.push(...own);
-    sentences.push(text);
+    const made = await withProgress(all.length, (work: Work) => takeImports(all, work));
+    problems.push(...made.problems);
+    sentences.push(made.text);
+    lost ||= made.lost;
   }
-  const text = [...sentences, told(problems)].filter(Boolean).join(" ");
-  if (text) say(text, problems.length > 0 ? "bad" : "good");
+  const text = [...sentences, lost, told(problems)].filter(Boolean).join(" ");
+  if (text) say(text, lost || problems.length > 0 ? "bad" : "good");
 }
 
 let last: Promise<void> = Promise.resolve();

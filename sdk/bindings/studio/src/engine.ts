@@ -3,6 +3,7 @@
 import { effect, signal } from "@preact/signals";
 import { HtexNode, prepare, type Loop, type Texture } from "htex";
 
+import { usualGain } from "./loudness.ts";
 import { finger, padSize } from "./motion.ts";
 import { fail, origin, present, texture } from "./state.ts";
 
@@ -21,8 +22,6 @@ export interface Sounding {
   readonly loop?: Loop;
 }
 
-/** RMS of full scale at which a texture plays. */
-const LOUDNESS = 0.1;
 /** Factor of all frequencies of *Audible*. */
 export const AUDIBLE = 4;
 
@@ -42,7 +41,7 @@ let context: AudioContext | null = null;
 let output: GainNode | null = null;
 let meter: AnalyserNode | null = null;
 let node: HtexNode | null = null;
-/** Gain of the piece of work: fixed while it is edited, so that a change of level is heard. */
+/** Gain of the piece of work, which belongs to the texture that it began with. */
 let gain = 1;
 let playing: Texture | null = null;
 
@@ -114,12 +113,6 @@ function sleep() {
   if (context?.state === "running" && finger.peek().force === 0) context.suspend().catch(fail);
 }
 
-/** The loudness of a texture at which its level is the usual one. */
-export function usualGain(of: Texture, model: string) {
-  const level = of.level({ model });
-  return level > 0 ? LOUDNESS / level : 0;
-}
-
 function start(sounding: Sounding, at: number) {
   if (!context || !entrance) return;
   const { speed, force } = finger.peek();
@@ -142,25 +135,15 @@ function sounds(sounding: Sounding, piece: Texture) {
   playing = piece;
 }
 
-/** The document that the loudness was set by. */
-let reference: unknown = null;
-
-/** Sets the loudness by the piece of work as it came to the desk. */
-function refer(of: Texture, model: string) {
-  if (reference === origin.peek()) return;
-  reference = origin.peek();
-  gain = usualGain(of, model);
-}
-
 /** Starts what follows the state; once. */
 export function run() {
   effect(() => {
     const [now, tries, document] = [texture.value, tried.value, present.value];
     if (!isReady.value) return;
+    gain = origin.value?.gain ?? 1;
     if (tries) sounds(tries, tries.texture);
     else if (now && document) {
       const model = now.models.includes(document.model) ? document.model : now.models[0] ?? "";
-      refer(now, model);
       sounds({ texture: now, model }, now);
     }
   });

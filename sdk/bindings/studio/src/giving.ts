@@ -7,9 +7,10 @@ import { compressedLibrary, plainBase64 } from "./modules.ts";
 import { theAuthor } from "./author.ts";
 import { toLink } from "./link.ts";
 import { fileName, save, wav } from "./save.ts";
-import { add } from "./shelf.ts";
+import { isolated } from "./names.ts";
+import { add, lostText } from "./shelf.ts";
 import { pilotForce, pilotSpeed } from "./motion.ts";
-import { edit, present, say, texture } from "./state.ts";
+import { edit, present, say, settle, texture } from "./state.ts";
 
 export interface Label {
   readonly name: string;
@@ -38,17 +39,27 @@ export function labelOf(): Label {
   };
 }
 
-/** Writes the label into the texture, as a step of its history. */
-export async function write(label: Label) {
-  const now = texture.peek();
-  const document = present.peek();
-  if (!now || !document) return;
-  const tags = label.tags.split(",").map((tag) => tag.trim()).filter(Boolean);
-  giver.value = { license: label.license, author: label.author };
-  const before = labelOf();
-  if (JSON.stringify(before) === JSON.stringify(label) && now.manifest["license"] === label.license) return;
-  const made = (await theAuthor()).edit(now, { name: label.name, license: label.license, author: label.author, description: label.description, tags });
-  edit({ texture: made, bytes: made.toBytes(), model: document.model, change: "label" });
+/** Writes a part of the label into the texture as it is typed: one step of the history until the field is left. */
+export async function write(part: Partial<Label>) {
+  const made = await theAuthor();
+  const [now, document] = [texture.peek(), present.peek()];
+  if (!now || !document || part.name?.trim() === "") return;
+  const { license = giver.peek().license, author = giver.peek().author } = part;
+  giver.value = { license, author };
+  const { tags, ...texts } = part;
+  const list = tags?.split(",").map((tag) => tag.trim()).filter(Boolean);
+  const edited = made.edit(now, list ? { ...texts, tags: list } : texts);
+  edit({ texture: edited, bytes: edited.toBytes(), model: document.model, change: "label" }, `label ${Object.keys(part).join()}`);
+}
+
+/** Writes the licence and the author that the form shows, if the texture has none. */
+export async function complete() {
+  await theAuthor();
+  const manifest = texture.peek()?.manifest;
+  const { license, author } = labelOf();
+  const missing = { ...(license && !manifest?.["license"] ? { license } : {}), ...(author && !manifest?.["author"] ? { author } : {}) };
+  if (Object.keys(missing).length > 0) await write(missing);
+  settle();
 }
 
 export function saveTexture() {
@@ -62,8 +73,9 @@ export function saveTexture() {
 export async function keepOnShelf() {
   const document = present.peek();
   if (!document) return;
-  await add(document.bytes);
-  say(`${document.name} is on your shelf, on this device.`, "good");
+  const added = await add(document.bytes);
+  const lost = lostText([added]);
+  say(`${isolated(added.name)} is on your shelf${lost ? `. ${lost}` : ", on this device."}`, lost ? "bad" : "good");
 }
 
 /** Ten seconds at the motion of the pad's sliders; full scale is one unit of the texture times the factor that is told. */

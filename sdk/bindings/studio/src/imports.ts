@@ -5,8 +5,9 @@ import { signal } from "@preact/signals";
 import { importFile, type ActuatorRange, type Asked, type Imported, type ImportFormat, type ImportReport, type ImportSettings } from "htex/import";
 
 import { theImporter } from "./importer.ts";
+import { isolated } from "./names.ts";
 import { told, type Problem, type Work } from "./opening.ts";
-import { add, type Item } from "./shelf.ts";
+import { add, lostText, type Item } from "./shelf.ts";
 import { breathe } from "./slices.ts";
 import { begin, say, screen } from "./state.ts";
 
@@ -91,7 +92,7 @@ export async function takeImports(files: readonly NamedFile[], work: Work) {
   }
   const complete = known.filter(({ asks }) => asks.length === 0).map((one) => ({ ...one, settings: {} }));
   const made = await importAll(complete, work);
-  return { problems: [...problems, ...made.problems], text: made.text };
+  return { ...made, problems: [...problems, ...made.problems] };
 }
 
 const without = (all: readonly Known[]) => waiting.peek().filter(({ file }) => !all.some((other) => other.file.name === file.name));
@@ -124,11 +125,11 @@ export async function importChosen() {
   aborting = new AbortController();
   try {
     const all = chosen.map((one) => ({ ...one, settings: settingsFor(one.format) }));
-    const { text, problems } = await importAll(all, { step: () => {}, signal: aborting.signal });
+    const { text, lost, problems } = await importAll(all, { step: () => {}, signal: aborting.signal });
     waiting.value = waiting.peek().map((one) => ({ ...one, isChosen: true, problem: problems.find(({ name }) => name === one.file.name)?.text ?? null }));
     // The distance of pixels and the actuator are of these files.
     if (waiting.peek().length === 0) given.value = { ...given.peek(), pitch_mm: undefined, profiles: {} };
-    say([text, told(problems)].filter(Boolean).join(" "), problems.length > 0 ? "bad" : "good");
+    say([text, lost, told(problems)].filter(Boolean).join(" "), lost || problems.length > 0 ? "bad" : "good");
   } finally {
     aborting = null;
   }
@@ -151,8 +152,9 @@ async function importAll(all: readonly (Known & { settings: ImportSettings })[],
   }
   importing.value = null;
   const [first] = made;
-  const sentence = made.length > 1 ? `${counted(made.length, "texture")} are on the shelf. ${first?.name} is on the pad.` : first ? `${first.name} is on the shelf and on the pad.` : "";
-  return { problems, text: [stopped.aborted ? "The import was stopped." : "", sentence].filter(Boolean).join(" ") };
+  const name = isolated(first?.name ?? "");
+  const sentence = made.length > 1 ? `${counted(made.length, "texture")} are on the shelf. ${name} is on the pad.` : first ? `${name} is on the shelf and on the pad.` : "";
+  return { problems, lost: lostText(made), text: [stopped.aborted ? "The import was stopped." : "", sentence].filter(Boolean).join(" ") };
 }
 
 async function importOne(file: NamedFile, format: ImportFormat, settings: ImportSettings, stopped: AbortSignal, isFirst: boolean) {
@@ -169,5 +171,5 @@ async function importOne(file: NamedFile, format: ImportFormat, settings: Import
 
 /** Puts an imported texture on the pad, played by a model. */
 export async function toPad(one: Done, model?: string) {
-  await begin(one.bytes, `import ${one.file.name}`, model);
+  await begin(one.bytes, `import ${isolated(one.file.name)}`, model);
 }

@@ -1,6 +1,6 @@
 // A texture on the shelf. It is opened when it is first seen or heard: a shelf may have thousands.
 
-import { signal, type ReadonlySignal } from "@preact/signals";
+import { signal, type ReadonlySignal, type Signal } from "@preact/signals";
 import { open, type Texture } from "htex";
 
 import { whenFree } from "./slices.ts";
@@ -25,6 +25,8 @@ export interface Facts {
 export interface Item extends Facts {
   /** What a search looks at: the name and the tags in small letters. */
   readonly text: string;
+  /** Whether it is there again when the page is opened the next time. */
+  readonly isKept: Signal<boolean>;
   /** The texture; null until it was opened. */
   readonly opened: ReadonlySignal<Opened | null>;
   readonly open: () => Promise<Opened>;
@@ -66,6 +68,7 @@ export function shelved(facts: Facts): Item {
     ...facts,
     tags,
     text: [facts.name, ...tags].join(" ").toLowerCase(),
+    isKept: signal(true),
     opened,
     open: openOnce,
     // What cannot be opened has no picture; it is told why when it is pressed.

@@ -5,9 +5,12 @@ import { Library } from "htex";
 
 import shelfAddress from "../shelf/shelf.htexlib?url";
 import { factsOf, shelved, type Item } from "./item.ts";
+import { isolated } from "./names.ts";
 import type { Problem, Work } from "./opening.ts";
 import { breathe } from "./slices.ts";
-import { forgetOwn, keepOwn, ownIds, ownTextures, type Own } from "./store.ts";
+import { notice, say, type Notice } from "./state.ts";
+import { forgetOwn, inTime, keepOwn, ownIds, ownTextures, type Own } from "./store.ts";
+import { onTold, tell } from "./tabs.ts";
 
 export type { Item };
 
@@ -47,19 +50,33 @@ export async function fill() {
   const response = await fetch(shelfAddress);
   if (!response.ok) throw new Error(`the shelf cannot be read: ${response.status} ${response.statusText}; reload the page`);
   items.value = await unpack(await Library.open(await response.arrayBuffer()));
-  readOwn().catch(() => {});
+  onTold("own", () => void readOwn());
+  void readOwn();
 }
 
-async function readOwn() {
-  const ids = await ownIds();
+let reading: Promise<void> = Promise.resolve();
+
+/** Brings the shelf in step with what this browser keeps: another tab may have added textures, or forgotten some. */
+function readOwn(): Promise<void> {
+  // If it fails, the store's `refusal` says so.
+  return (reading = reading.then(compareOwn).catch(() => {}));
+}
+
+async function compareOwn() {
+  // What comes to the shelf from here on may not be among the ids.
+  const before = items.peek();
+  const there = new Set(await ownIds());
+  const gone = new Set(before.filter(({ id, isOwn, isKept }) => isOwn && isKept.peek() && !there.has(id)));
+  const here = new Set(items.peek().map(({ id }) => id));
+  const missing = [...there].filter((id) => !here.has(id));
   const mine: Item[] = [];
-  for (let at = 0; at < ids.length; at += BATCH) {
-    for (const own of await ownTextures(ids.slice(at, at + BATCH))) {
+  for (let at = 0; at < missing.length; at += BATCH) {
+    for (const own of await ownTextures(missing.slice(at, at + BATCH))) {
       const read = own && (await kept(own).catch(() => null));
       if (read) mine.push(read);
     }
   }
-  place(mine);
+  if (mine.length + gone.size > 0) place(mine, gone);
 }
 
 /** What was kept of a texture. One that an earlier version of the page kept is opened to be read. */
@@ -73,19 +90,37 @@ function ownOf({ id, name, tags: all, bytes, added }: Item): Own {
 }
 
 /** Puts textures on the shelf: the user's own, the newest first, then those of the page. */
-function place(some: readonly Item[]) {
+function place(some: readonly Item[], gone: ReadonlySet<Item> = new Set()) {
   const ids = new Set(some.map(({ id }) => id));
-  items.value = [...some, ...items.peek().filter(({ id }) => !ids.has(id))].sort((a, b) => b.added - a.added);
+  const others = items.peek().filter((one) => !ids.has(one.id) && !gone.has(one));
+  items.value = [...some, ...others].sort((a, b) => b.added - a.added);
 }
 
 const newId = () => `own ${crypto.randomUUID()}`;
 
-/** Keeps a texture on this device. */
+/** Puts a texture on the shelf, and keeps it on this device if the browser does. */
 export async function add(bytes: Uint8Array): Promise<Item> {
   const added = await item(newId(), bytes, true, Date.now());
-  place([added]);
-  await keepOwn([ownOf(added)]);
+  await keepAll([added]);
   return added;
+}
+
+async function keepAll(some: readonly Item[]) {
+  const setKept = (isKept: boolean) => some.forEach((one) => (one.isKept.value = isKept));
+  const writing = keepOwn(some.map(ownOf)).then(() => tell("own"));
+  const isKept = await inTime(writing).then(() => true, () => false);
+  setKept(isKept);
+  place(some);
+  // They may be written late.
+  if (!isKept) writing.then(() => setKept(true), () => {});
+}
+
+/** What is to be said of those textures that the browser did not store; empty if it stored all. */
+export function lostText(some: readonly Item[]) {
+  const lost = some.filter(({ isKept }) => !isKept.peek()).length;
+  if (lost === 0) return "";
+  const what = some.length === 1 ? "it" : lost === some.length ? "them" : `${lost} of them`;
+  return `The browser did not store ${what}: save as a file what you want to have later.`;
 }
 
 /** A texture in a file or a library, which is not yet read. */
@@ -94,7 +129,7 @@ export interface Source {
   readonly bytes: () => Promise<Uint8Array>;
 }
 
-/** Keeps textures on this device, in their order. One that cannot be read is told, and the next one is taken. */
+/** Puts textures on the shelf, in their order. One that cannot be read is told, and the next one is taken. */
 export async function addAll(sources: AsyncIterable<Source>, { step, signal: stopped }: Work) {
   const [added, problems]: [Item[], Problem[]] = [[], []];
   const began = Date.now();
@@ -103,8 +138,7 @@ export async function addAll(sources: AsyncIterable<Source>, { step, signal: sto
     const some = batch;
     batch = [];
     added.push(...some);
-    place(some);
-    await keepOwn(some.map(ownOf)).catch((error) => problems.push({ name: "This device", error }));
+    await keepAll(some);
   };
   for await (const { name, bytes } of sources) {
     if (stopped.aborted) break;
@@ -122,8 +156,27 @@ export async function addAll(sources: AsyncIterable<Source>, { step, signal: sto
   return { added, problems };
 }
 
+/** What the message on the page offers to bring back. */
+let forgotten: { items: readonly Item[]; told: Notice | null } = { items: [], told: null };
+
+/** Takes a texture from the shelf. The message offers Undo. */
 export async function forget(gone: Item) {
-  items.value = items.value.filter((other) => other !== gone);
-  await forgetOwn(gone.id);
+  items.value = items.peek().filter((other) => other !== gone);
   gone.free();
+  const before = notice.peek() === forgotten.told ? forgotten.items : [];
+  const all = [...before, gone];
+  const what = all.length === 1 ? `${isolated(gone.name)} is` : `${all.length} textures are`;
+  forgotten = { items: all, told: say(`${what} no longer on the shelf.`, "plain", () => bringBack(all)) };
+  if (gone.isKept.peek()) await forgetOwn(gone.id);
+  // Meanwhile another tab may have made this one read it again.
+  items.value = items.peek().filter(({ id }) => id !== gone.id);
+  tell("own");
+}
+
+async function bringBack(some: readonly Item[]) {
+  notice.value = null;
+  await keepAll(some);
+  const lost = lostText(some);
+  const what = some.length === 1 ? `${isolated(some[0]?.name ?? "")} is` : `${some.length} textures are`;
+  say(`${what} on the shelf. ${lost}`.trim(), lost ? "bad" : "good");
 }

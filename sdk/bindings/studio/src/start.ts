@@ -11,42 +11,47 @@ import { finger, rest } from "./motion.ts";
 import { handles, moveHandle, setMacro } from "./shaping/session.ts";
 import { setPlayer } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
-import { begin, depth, fail, present, redo, say, screen, texture, undo, type Document } from "./state.ts";
-import { keepWork, lastWork } from "./store.ts";
+import { begin, depth, fail, notice, present, redo, say, screen, texture, undo, type Notice } from "./state.ts";
+import { inTime, refusal } from "./store.ts";
+import { keep, keepWork, suggest } from "./work.ts";
 
 /** Texture that is on the pad when the page is opened for the first time. */
 const FIRST = "Coarse fabric";
-/** Milliseconds after the last edit at which the work is kept. */
-const AUTOSAVE_MS = 400;
 
 /** A texture of the address comes to the pad; true if there is one. */
 async function openLink() {
   const bytes = fromLink(location.href);
   if (!bytes) return false;
   await begin(bytes, "open a link");
+  // The browser keeps this over a reload, which then brings back what was made of the texture.
+  history.replaceState({ isOpened: true }, "");
   say(`${present.peek()?.name ?? "A texture"} came with the link.`, "good");
   screen.value = "shape";
   return true;
 }
 
-async function openLast() {
-  const work = await lastWork<Document>().catch(() => undefined);
-  if (!work) return false;
-  await begin(work.bytes, work.change, work.model);
-  return true;
-}
-
 async function openFirst() {
   const first = items.peek().find(({ name }) => name === FIRST) ?? items.peek()[0];
-  if (first) await begin(first.bytes, `open ${first.name}`);
+  if (first) await suggest(first.bytes, `open ${first.name}`);
 }
 
-function autosave() {
-  let timer = 0;
+/** Opens the texture of the address, or the work of last time. */
+async function openWork() {
+  // A link that is cut off is told, and the page goes on without it.
+  const or = (error: unknown) => (fail(error), false);
+  const isReload = history.state?.isOpened === true;
+  if (!isReload && (await openLink().catch(or))) return;
+  await inTime(keep()).catch(() => {});
+  if (isReload && !present.peek()) await openLink().catch(or);
+}
+
+/** Says that the browser stores nothing, for as long as this is so. */
+function tellRefusal() {
+  let told: Notice | null = null;
   effect(() => {
-    const now = present.value;
-    clearTimeout(timer);
-    if (now) timer = window.setTimeout(() => keepWork(now).catch(() => {}), AUTOSAVE_MS);
+    const why = refusal.value;
+    if (why) told = say(`${why} The page works, but what you make is gone when you close it: save it as a file.`, "bad");
+    else if (told && notice.peek() === told) notice.value = null;
   });
 }
 
@@ -60,10 +65,12 @@ function keys(event: KeyboardEvent) {
   const isText = event.target instanceof HTMLInputElement && /^(text|search|number)$/.test(event.target.type);
   if (isText || event.target instanceof HTMLTextAreaElement || !(event.ctrlKey || event.metaKey)) return;
   const key = event.key.toLowerCase();
-  const action = key === "z" ? (event.shiftKey ? redo : undo) : key === "y" ? redo : null;
+  // While a message offers Undo, that is what was done last.
+  const back = notice.peek()?.undo ?? undo;
+  const action = key === "z" ? (event.shiftKey ? redo : back) : key === "y" ? redo : null;
   if (!action) return;
   event.preventDefault();
-  action().catch(fail);
+  Promise.resolve(action()).catch(fail);
 }
 
 /** Keeps a phone's screen on while one plays. */
@@ -86,7 +93,7 @@ function stayAwake() {
 export function start() {
   run();
   const player = setPlayer();
-  autosave();
+  tellRefusal();
   stayAwake();
   listenForDrops(document.body);
   addEventListener("pointerdown", wake, { capture: true });
@@ -95,16 +102,14 @@ export function start() {
   addEventListener("hashchange", () => openLink().catch(fail));
   // Leaving the page in the middle of a stroke leaves no sound behind.
   document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && silence());
-  // A link that is cut off is told, and the page goes on without it.
-  const or = (error: unknown) => (fail(error), false);
-  const opened = async () => (await openLink().catch(or)) || (await openLast().catch(or));
   player
     .then(() => {
       warm().catch(fail);
-      return Promise.all([opened(), fill()]);
+      return Promise.all([openWork(), fill()]);
     })
-    .then(async ([isThere]) => {
-      if (!isThere) await openFirst();
+    .then(async () => {
+      if (!present.peek()) await openFirst();
+      keepWork();
       document.documentElement.dataset["ready"] = "yes";
       performance.mark("ready");
     })

@@ -3,54 +3,39 @@
 import { batch, computed, signal } from "@preact/signals";
 import { open, type Texture } from "htex";
 
-/** A texture at one moment of the work. Nothing of it changes. */
-export interface Document {
-  readonly bytes: Uint8Array;
-  readonly name: string;
-  /** Id of the model that plays. */
-  readonly model: string;
-  /** What was done to come here, in a few words. */
-  readonly change: string;
-}
+import { EMPTY, back, forth, isSame, step, type History } from "./history.ts";
+import { usualGain } from "./loudness.ts";
 
 export type Screen = "shelf" | "shape" | "mix" | "vary" | "compare" | "record" | "give";
 
 export interface Notice {
   text: string;
   kind: "good" | "bad" | "plain";
+  /** Takes back what the message says. */
+  undo?: (() => unknown) | undefined;
 }
 
-/** Most steps that can be undone. */
-export const STEPS = 500;
-
-interface History {
-  readonly past: readonly Document[];
-  readonly present: Document | null;
-  readonly future: readonly Document[];
-  /** The gesture that made the present document; the next step of the same gesture replaces it. */
-  readonly gesture: string | null;
-}
-
-const history = signal<History>({ past: [], present: null, future: [], gesture: null });
+export const history = signal<History>(EMPTY);
 
 export const screen = signal<Screen>("shelf");
 export const notice = signal<Notice | null>(null);
-/** The present texture, opened. It trails the document by the time of opening. */
+/** The present texture, opened. It changes together with the present document. */
 export const texture = signal<Texture | null>(null);
-/** The document as it was when it came to the desk: what edits are compared with. */
-export const origin = signal<Document | null>(null);
 export const present = computed(() => history.value.present);
+/** The texture as it was opened: what edits are compared with. */
+export const origin = computed(() => history.value.present?.origin ?? null);
 export const undoable = computed(() => history.value.past.at(-1) && history.value.present?.change);
 export const redoable = computed(() => history.value.future[0]?.change);
 export const depth = computed(() => history.value.past.length);
 
-/** Milliseconds after which a message goes; one of an error stays. */
+/** Milliseconds after which a message goes. A message of an error stays, and one that offers Undo. */
 const SHOWN_MS = 6000;
 
-export function say(text: string, kind: Notice["kind"] = "plain") {
-  const told = { text, kind };
+export function say(text: string, kind: Notice["kind"] = "plain", undo?: Notice["undo"]) {
+  const told = { text, kind, undo };
   notice.value = told;
-  if (kind !== "bad") setTimeout(() => notice.peek() === told && (notice.value = null), SHOWN_MS);
+  if (kind !== "bad" && !undo) setTimeout(() => notice.peek() === told && (notice.value = null), SHOWN_MS);
+  return told;
 }
 
 export function fail(error: unknown) {
@@ -64,28 +49,32 @@ function show(opened: Texture) {
   if (before && before !== opened) queueMicrotask(() => before.free());
 }
 
-let opening = 0;
-
-/** Opens the present document; a later call wins. */
-async function reopen() {
-  const document = history.peek().present;
-  opening += 1;
-  const ticket = opening;
-  if (!document) return;
-  const opened = await open(document.bytes);
-  if (ticket === opening) show(opened);
-  else opened.free();
+/** Goes to another history. Its texture is opened first, so that it and the document change together. Returns where this began, or null. */
+export async function go(to: (now: History) => History | null): Promise<History | null> {
+  const from = history.peek();
+  const next = to(from);
+  if (!next?.present || next === from) return null;
+  const opened = next.present === from.present ? null : await open(next.present.bytes);
+  // An edit came first: from there, the way may be another.
+  if (!isSame(history.peek(), from)) {
+    opened?.free();
+    return go(to);
+  }
+  batch(() => {
+    history.value = next;
+    if (opened) show(opened);
+  });
+  return from;
 }
 
 /** Puts a texture on the desk as a new piece of work. */
 export async function begin(bytes: Uint8Array, change: string, model?: string) {
   const opened = await open(bytes);
-  const document = { bytes, name: opened.name, model: model ?? best(opened), change };
-  opening += 1;
-  const { past, present: before } = history.peek();
+  const plays = model && opened.models.includes(model) ? model : best(opened);
+  const origin = { id: crypto.randomUUID(), bytes, model: plays, gain: usualGain(opened, plays) };
+  const document = { id: origin.id, bytes, name: opened.name, model: plays, change, origin };
   batch(() => {
-    history.value = { past: before ? keep([...past, before]) : past, present: document, future: [], gesture: null };
-    origin.value = document;
+    history.value = step(history.peek(), document, null);
     show(opened);
   });
 }
@@ -98,19 +87,14 @@ function best(opened: Texture): string {
   return model;
 }
 
-function keep(past: readonly Document[]) {
-  return past.slice(-STEPS);
-}
-
 /** Takes an edited texture. Steps of the same gesture, such as one drag, are undone together. */
 export function edit(made: { texture: Texture; bytes: Uint8Array; model: string; change: string }, gesture: string | null = null) {
-  const { past, present: before, gesture: last } = history.peek();
-  const document = { bytes: made.bytes, name: made.texture.name, model: made.model, change: made.change };
-  const continues = gesture !== null && gesture === last;
-  const kept = continues || !before ? past : keep([...past, before]);
-  opening += 1;
+  const { present: before } = history.peek();
+  if (!before) return;
+  const { bytes, model, change } = made;
+  const document = { id: crypto.randomUUID(), bytes, name: made.texture.name, model, change, origin: before.origin };
   batch(() => {
-    history.value = { past: kept, present: document, future: [], gesture };
+    history.value = step(history.peek(), document, gesture);
     show(made.texture);
   });
 }
@@ -119,8 +103,7 @@ export function edit(made: { texture: Texture; bytes: Uint8Array; model: string;
 export function choose(model: string) {
   const { present: before } = history.peek();
   if (!before || before.model === model) return;
-  const { past } = history.peek();
-  history.value = { past: keep([...past, before]), present: { ...before, model, change: "choose a model" }, future: [], gesture: null };
+  history.value = step(history.peek(), { ...before, id: crypto.randomUUID(), model, change: "choose a model" }, null);
 }
 
 /** Ends a gesture: what follows is a step of its own. */
@@ -129,19 +112,10 @@ export function settle() {
 }
 
 export async function undo() {
-  const { past, present: now, future } = history.peek();
-  const before = past.at(-1);
-  if (!before || !now) return;
-  history.value = { past: past.slice(0, -1), present: before, future: [now, ...future], gesture: null };
-  say(`Undone: ${now.change}`);
-  await reopen();
+  const from = await go(back);
+  if (from) say(`Undone: ${from.present?.change}`);
 }
 
 export async function redo() {
-  const { past, present: now, future } = history.peek();
-  const next = future[0];
-  if (!next || !now) return;
-  history.value = { past: [...past, now], present: next, future: future.slice(1), gesture: null };
-  say(`Redone: ${next.change}`);
-  await reopen();
+  if (await go(forth)) say(`Redone: ${history.peek().present?.change}`);
 }

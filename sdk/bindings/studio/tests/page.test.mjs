@@ -246,13 +246,6 @@ test("own textures and the work of last time are there again", async () => {
   await page.getByRole("button", { name: "Keep on my shelf" }).click();
   await page.getByText(/is on your shelf/).waitFor();
   const work = await bytesOf(page);
-  await until(page, async (length) => {
-    const asked = (request) => new Promise((resolve, reject) => Object.assign(request, { onsuccess: () => resolve(request.result), onerror: () => reject(request.error) }));
-    const database = await asked(indexedDB.open("htex-studio"));
-    const kept = await asked(database.transaction("session").objectStore("session").get("work"));
-    database.close();
-    return kept?.bytes.length === length && kept.bytes.every((byte, i) => byte === htexStudio.present.value.bytes[i]);
-  }, work.length);
   await page.reload();
   await ready(page);
   assert.deepEqual(await bytesOf(page), work);

@@ -4,6 +4,7 @@ import type { Columns } from "htex";
 
 import { entriesOf, isOf, ROLE_NAMES, roleUnit, rolesOf, UNITS, withColumn } from "../columns.ts";
 import { state, stated } from "../recordings.ts";
+import { Name } from "./name.tsx";
 
 type Column = Columns["columns"][number];
 
@@ -20,7 +21,7 @@ function Row({ columns, column, index }: { columns: Columns; column: Column; ind
   return (
     <tr>
       <th scope="row">
-        <bdi>{column.name}</bdi>
+        <Name>{column.name}</Name>
       </th>
       <td>
         <select aria-label={`Role of ${column.name}`} value={role} onChange={(event) => say({ role: event.currentTarget.value, scale: null })}>

@@ -2,8 +2,10 @@
 
 import { audible, sound, toggleSound, volume } from "../engine.ts";
 import { depth, fail, origin, present, redo, redoable, screen, undo, undoable } from "../state.ts";
+import { refusal } from "../store.ts";
 import { FeelOn } from "./feel-on.tsx";
 import { Icon } from "./icons.tsx";
+import { Name } from "./name.tsx";
 
 function History() {
   return (
@@ -45,8 +47,9 @@ export function Top() {
         <span class="brand-name">htex studio</span>
       </span>
       <span class="piece" title={present.value ? `${depth.value} steps can be undone` : ""}>
-        {present.value?.name ?? "…"}
+        {present.value ? <Name>{present.value.name}</Name> : "…"}
         {present.value && origin.value && present.value.bytes !== origin.value.bytes && <small> · edited</small>}
+        {refusal.value && <small title={refusal.value}> · not stored</small>}
       </span>
       <History />
       <Sound />

@@ -6,6 +6,7 @@ import type { RecordedLoop } from "htex";
 import { AgainstRecording } from "../parts/against-recording.tsx";
 import { Difference } from "../parts/difference.tsx";
 import { Icon } from "../parts/icons.tsx";
+import { Name } from "../parts/name.tsx";
 import { save } from "../save.ts";
 import { nameOf } from "./shape.tsx";
 import { abandon, answer, beginTest, both, chance, choices, correct, heardSide, isMatched, isTesting, play, playX, sides, stop, toCsv, trials, TRIALS, type Side } from "../comparing.ts";
@@ -42,7 +43,10 @@ function Play({ side, name }: { side: Side | "x"; name: string }) {
   return (
     <button class="side" aria-pressed={isHeard} onClick={() => (side === "x" ? playX() : play(side))}>
       <b>{side.toUpperCase()}</b>
-      <span>{isHeard ? `${name}, plays` : name}</span>
+      <span>
+        <Name>{name}</Name>
+        {isHeard && ", plays"}
+      </span>
     </button>
   );
 }

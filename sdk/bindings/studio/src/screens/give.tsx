@@ -3,47 +3,33 @@
 import { useState } from "preact/hooks";
 
 import { theAuthor, author } from "../author.ts";
-import { keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, write, type Label } from "../giving.ts";
+import { complete, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, write, type Label } from "../giving.ts";
 import { Icon } from "../parts/icons.tsx";
+import { TextField } from "../parts/text-field.tsx";
 import { pilotForce, pilotSpeed } from "../motion.ts";
 import { fileName } from "../save.ts";
 import { snippets } from "../snippets.ts";
-import { fail, present, say, texture } from "../state.ts";
+import { fail, present, say, settle } from "../state.ts";
 
 const LICENCES = ["CC0-1.0", "CC-BY-4.0", "CC-BY-SA-4.0", "CC-BY-NC-4.0", "MIT"];
 
-function LabelForm({ onReady }: { onReady: (write: () => Promise<void>) => void }) {
-  const [label, change] = useState<Label>(labelOf);
-  const set = (part: Partial<Label>) => change({ ...label, ...part });
-  onReady(() => write(label));
+/** What is typed is written at once, so it is there on the other screens, and after a reload. */
+function LabelForm() {
+  const { name, license, author: by, tags, description } = labelOf();
+  const field = (part: keyof Label) => ({ onText: (text: string) => write({ [part]: text }).catch(fail), onSettled: settle });
   return (
     <div class="panel stack">
       <h2>Label</h2>
-      <label class="field">
-        Name
-        <input type="text" required value={label.name} onInput={(event) => set({ name: event.currentTarget.value })} />
-      </label>
-      <label class="field">
-        Licence
-        <input type="text" list="licences" value={label.license} onInput={(event) => set({ license: event.currentTarget.value })} />
-        <datalist id="licences">
-          {LICENCES.map((one) => (
-            <option key={one} value={one} />
-          ))}
-        </datalist>
-      </label>
-      <label class="field">
-        Author
-        <input type="text" value={label.author} onInput={(event) => set({ author: event.currentTarget.value })} />
-      </label>
-      <label class="field">
-        Tags, with commas
-        <input type="text" value={label.tags} onInput={(event) => set({ tags: event.currentTarget.value })} />
-      </label>
-      <label class="field">
-        Description
-        <textarea rows={2} value={label.description} onInput={(event) => set({ description: event.currentTarget.value })} />
-      </label>
+      <TextField label="Name" isRequired value={name} {...field("name")} />
+      <TextField label="Licence" list="licences" value={license} {...field("license")} />
+      <datalist id="licences">
+        {LICENCES.map((one) => (
+          <option key={one} value={one} />
+        ))}
+      </datalist>
+      <TextField label="Author" value={by} {...field("author")} />
+      <TextField label="Tags, with commas" value={tags} {...field("tags")} />
+      <TextField label="Description" rows={2} value={description} {...field("description")} />
     </div>
   );
 }
@@ -90,7 +76,7 @@ function Snippets() {
   );
 }
 
-function Link({ first }: { first: () => Promise<void> }) {
+function Link() {
   const address = link();
   const isFile = location.protocol === "file:";
   return (
@@ -100,7 +86,7 @@ function Link({ first }: { first: () => Promise<void> }) {
         The texture itself is in the part after <code>#t=</code>, {Math.ceil(address.length / 100) / 10} kB; no server sees it.
         {isFile && " This page is a file of yours: the link opens for whoever has the same file at the same place. Serve the folder for links to others."}
       </p>
-      <button class="button" onClick={() => first().then(() => copy(link(), "The link")).catch(fail)}>
+      <button class="button" onClick={() => complete().then(() => copy(link(), "The link")).catch(fail)}>
         Copy the link
       </button>
     </div>
@@ -109,8 +95,7 @@ function Link({ first }: { first: () => Promise<void> }) {
 
 export function Give() {
   if (!author.value) theAuthor().catch(fail);
-  let writing: () => Promise<void> = async () => {};
-  const after = (then: () => unknown) => () => writing().then(then).catch(fail);
+  const after = (then: () => unknown) => () => complete().then(then).catch(fail);
   return (
     <section aria-labelledby="give-title">
       <header class="screen-head">
@@ -123,7 +108,7 @@ export function Give() {
         </button>
       </header>
       <div class="columns">
-        <LabelForm key={texture.value?.name} onReady={(write) => (writing = write)} />
+        <LabelForm />
         <div class="stack">
           <div class="panel stack">
             <h2>Files</h2>
@@ -138,7 +123,7 @@ export function Give() {
             </p>
             <Report />
           </div>
-          <Link first={() => writing()} />
+          <Link />
         </div>
       </div>
       <div class="below">

@@ -4,6 +4,7 @@ import type { RecordedQuantity } from "htex";
 import type { ImportFormat } from "htex/import";
 
 import { actuators, chooseWaiting, counted, done, given, importChosen, importing, leaveOut, list, stop, toPad, waiting, type Done, type Given, type Waiting } from "../imports.ts";
+import { Name } from "../parts/name.tsx";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
@@ -97,7 +98,7 @@ function Files({ all }: { all: readonly Waiting[] }) {
         <li key={one.file.name}>
           <label class="check">
             <input type="checkbox" checked={one.isChosen} onChange={(event) => chooseWaiting(one, event.currentTarget.checked)} />
-            <bdi>{one.file.name}</bdi>
+            <Name>{one.file.name}</Name>
           </label>
           {one.problem && <p class="problem small">{one.problem}</p>}
         </li>
@@ -125,7 +126,7 @@ function Asking({ all }: { all: readonly Waiting[] }) {
       }}
     >
       <h2>
-        <bdi>{name}</bdi>
+        <Name>{name}</Name>
       </h2>
       {!isOnly && <Files all={all} />}
       {formats.map((format) => (
@@ -145,7 +146,7 @@ function Asking({ all }: { all: readonly Waiting[] }) {
         {isBusy && (
           <>
             <span class="small soft" role="status">
-              Importing <bdi>{importing.value}</bdi>…
+              Importing <Name>{importing.value ?? ""}</Name>…
             </span>
             <button type="button" class="button" onClick={stop}>Stop</button>
           </>
@@ -166,7 +167,7 @@ function Told({ one, isOnly }: { one: Done; isOnly: boolean }) {
     <details class="panel" open={isOnly}>
       <summary>
         <h2>
-          <bdi>{file.name}</bdi>
+          <Name>{file.name}</Name>
         </h2>
       </summary>
       <div class="stack">

@@ -2,6 +2,7 @@
 
 import { useEffect, useRef } from "preact/hooks";
 
+import { isolated } from "../names.ts";
 import { Slider } from "../parts/slider.tsx";
 import { chosen, corners, endListening, listen, parts, place, takeMixture } from "../mixing.ts";
 import { items } from "../shelf.ts";
@@ -18,10 +19,10 @@ function Corner({ index }: { index: number }) {
     <label class={`corner corner-${index}`}>
       <span class="hidden">Texture {NAMES[index]}</span>
       <select value={chosen.value[index]} onChange={(event) => choose(event.currentTarget.value)}>
-        <option value="">{present.value?.name ?? "the present texture"} (on the pad)</option>
+        <option value="">{present.value ? isolated(present.value.name) : "the present texture"} (on the pad)</option>
         {items.value.map(({ id, name }) => (
           <option key={id} value={id}>
-            {name}
+            {isolated(name)}
           </option>
         ))}
       </select>

@@ -7,6 +7,7 @@ import { author } from "../author.ts";
 import { QUANTITIES, unitOf } from "../columns.ts";
 import { ColumnTable } from "../parts/column-table.tsx";
 import { Icon } from "../parts/icons.tsx";
+import { Name } from "../parts/name.tsx";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
@@ -65,7 +66,7 @@ function OneRead({ read: { recording, columns, processed, problem }, index }: { 
   return (
     <article class="panel stack">
       <h2>
-        <bdi>{recording.name}</bdi>
+        <Name>{recording.name}</Name>
       </h2>
       {problem && (
         <div>
@@ -223,7 +224,7 @@ function Reading() {
     <div class="row">
       <progress max={now.of} value={now.of > 1 ? now.done : undefined} aria-label="Progress of the reading" />
       <span role="status">
-        Reading <bdi>{now.name}</bdi>
+        Reading <Name>{now.name}</Name>
         {now.of > 1 && `, ${now.done + 1} of ${now.of}`}
       </span>
       <button class="button" onClick={haltReading}>

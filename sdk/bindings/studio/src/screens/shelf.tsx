@@ -5,14 +5,17 @@ import { useEffect, useRef } from "preact/hooks";
 
 import { endAudition, onLook } from "../audition.ts";
 import { OPENED, take } from "../drop.ts";
+import { isolated } from "../names.ts";
 import { Icon } from "../parts/icons.tsx";
+import { Name } from "../parts/name.tsx";
 import { NoSparkline, Sparkline } from "../parts/sparkline.tsx";
 import { chosenTag, forget, found, items, search, tags, type Item } from "../shelf.ts";
 import { begin, fail, present, say, screen } from "../state.ts";
 
 async function choose(item: Item) {
-  await begin(item.bytes, `open ${item.name}`);
-  say(`${item.name} is on the pad. Slide over it, or go on to Shape.`);
+  const name = isolated(item.name);
+  await begin(item.bytes, `open ${name}`);
+  say(`${name} is on the pad. Slide over it, or go on to Shape.`);
 }
 
 /** Arrow keys go through the cards. */
@@ -38,8 +41,10 @@ function Card({ item }: { item: Item }) {
     <li>
       <button class={isHere ? "card here" : "card"} aria-pressed={isHere} {...looks} onClick={() => choose(item).catch(fail)} onDblClick={() => (screen.value = "shape")}>
         {opened ? <Sparkline {...opened} /> : <NoSparkline />}
-        <span class="card-name">{item.name}</span>
-
+        <span class="card-name">
+          <Name>{item.name}</Name>
+        </span>
+        {!item.isKept.value && <span class="card-lost">Not stored: save it as a file</span>}
         <span class="card-tags">{isHere ? "● on the pad" : item.tags.slice(0, 3).join(" · ")}</span>
       </button>
       {item.isOwn && (

@@ -3,6 +3,7 @@
 import { useEffect } from "preact/hooks";
 
 import { endAudition, onLook } from "../audition.ts";
+import { Name } from "../parts/name.tsx";
 import { Slider } from "../parts/slider.tsx";
 import { Sparkline } from "../parts/sparkline.tsx";
 import { fail, present, say } from "../state.ts";
@@ -39,7 +40,7 @@ export function Vary() {
       <header class="screen-head">
         <div>
           <h1 id="vary-title">Vary</h1>
-          <p>Nine textures near {present.value?.name ?? "the one on the pad"}. Pass over one to try it, press to take it.</p>
+          <p>Nine textures near {present.value ? <Name>{present.value.name}</Name> : "the one on the pad"}. Pass over one to try it, press to take it.</p>
         </div>
         <button class="button" onClick={() => again().catch(fail)}>
           Nine others

@@ -22,14 +22,8 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     run(program("node", &tests)
         .args(["--test", "--test-concurrency=1"])
-        .args([
-            "page.test.mjs",
-            "import.test.mjs",
-            "opening.test.mjs",
-            "history.test.mjs",
-            "served.test.mjs",
-            "firefox.test.mjs",
-        ])
+        .args(["page.test.mjs", "import.test.mjs", "opening.test.mjs", "history.test.mjs"])
+        .args(["trust.test.mjs", "windows.test.mjs", "served.test.mjs", "firefox.test.mjs"])
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)
         .env("HTEX_CHROMIUM", which(chromium)))

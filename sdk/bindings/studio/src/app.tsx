@@ -3,7 +3,8 @@
 import { lazy, Suspense } from "preact/compat";
 import { useEffect, useErrorBoundary, useRef } from "preact/hooks";
 
-import { Dock } from "./parts/dock.tsx";
+import { Details } from "./parts/details.tsx";
+import { Dock, showPad } from "./parts/dock.tsx";
 import { Icon, type IconName } from "./parts/icons.tsx";
 import { Opening } from "./parts/opening.tsx";
 import { Top } from "./parts/top.tsx";
@@ -13,7 +14,9 @@ import { Mix } from "./screens/mix.tsx";
 import { Shape } from "./screens/shape.tsx";
 import { Shelf } from "./screens/shelf.tsx";
 import { Vary } from "./screens/vary.tsx";
+import { spoken } from "./spoken.ts";
 import { fail, notice, screen, type Screen } from "./state.ts";
+import { troubleOf } from "./trouble.ts";
 
 /** The screen of recordings comes when it is first shown: what draws its curves is a third of the page. */
 const Record = lazy(() => import("./screens/record.tsx").then(({ Record: shown }) => ({ default: shown })));
@@ -41,6 +44,7 @@ function Tabs() {
   );
 }
 
+/** The message, in the page's only live region. Screen readers say only what is added to it. */
 function Notice() {
   const now = notice.value;
   const undo = useRef<HTMLButtonElement>(null);
@@ -53,22 +57,24 @@ function Notice() {
     Promise.resolve(now?.undo?.()).catch(fail);
   };
   return (
-    <div class={`notice ${now?.kind ?? ""}`} role="status" aria-live="polite">
+    <div class={`notice ${now?.kind ?? ""}`} role="status" aria-live="polite" aria-atomic="false">
       {now && (
         <>
           {now.kind === "bad" && <Icon name="warn" />}
           {now.kind === "good" && <Icon name="check" />}
-          <span class="name">{now.text}</span>
+          <span class="notice-text">{now.text}</span>
           {now.undo && (
             <button class="button" ref={undo} onClick={back}>
               Undo
             </button>
           )}
+          {now.details && <Details key={now.details} text={now.details} />}
           <button class="icon-button" aria-label="Close this message" onClick={() => (notice.value = null)}>
             <Icon name="close" />
           </button>
         </>
       )}
+      <span class="hidden">{spoken}</span>
     </div>
   );
 }
@@ -77,11 +83,30 @@ function Notice() {
 function Safely({ children }: { children: preact.ComponentChildren }) {
   const [error] = useErrorBoundary(fail);
   if (!error) return <>{children}</>;
+  const { text, details } = troubleOf(error);
   return (
     <section>
-      <h1>This screen has failed</h1>
-      <p class="empty">{String((error as Error).message ?? error)}. The texture is as it was; another screen, or undo, goes on.</p>
+      <h1>This screen stopped working</h1>
+      <p class="empty">Your texture is unchanged. Open another screen, or undo the last step.</p>
+      <Details text={details ?? text} />
     </section>
+  );
+}
+
+/** Moves the keyboard past the top and the tabs. `onSkip` shows the place, if it is hidden. */
+function Skip({ to, name, onSkip }: { to: string; name: string; onSkip?: () => void }) {
+  const skip = async (event: Event) => {
+    // The address stays, because it may contain a texture.
+    event.preventDefault();
+    onSkip?.();
+    // What was hidden can have the focus once it is drawn.
+    await Promise.resolve();
+    document.querySelector<HTMLElement>(to)?.focus();
+  };
+  return (
+    <a class="skip" href={to} onClick={skip}>
+      {name}
+    </a>
   );
 }
 
@@ -97,6 +122,8 @@ export function App() {
   }, [screen.value]);
   return (
     <div class="frame">
+      <Skip to="#screen" name="Skip to the screen" />
+      <Skip to="#pad" name="Skip to the pad" onSkip={showPad} />
       <Top />
       <Tabs />
       <main class="screen" id="screen" tabIndex={-1} ref={place}>
@@ -106,9 +133,10 @@ export function App() {
           </Suspense>
         </Safely>
       </main>
-      <Dock />
-      <Opening />
-      <Notice />
+      <Dock>
+        <Opening />
+        <Notice />
+      </Dock>
     </div>
   );
 }

@@ -4,6 +4,10 @@ import { sound, tried, type Sounding } from "./engine.ts";
 import { pilot, setPilot } from "./motion.ts";
 
 let lent = false;
+let ending = 0;
+
+/** Milliseconds for which a tapped texture sounds. A finger does not leave it as a mouse does. */
+const TAPPED_MS = 2500;
 
 /** What is looked at; a texture that has yet to be opened may come when something else is. */
 let look: object | null = null;
@@ -23,10 +27,17 @@ export function audition(sounding: Sounding) {
 /** Plays the present texture again. */
 export function endAudition() {
   look = null;
+  clearTimeout(ending);
   tried.value = null;
   if (!lent) return;
   lent = false;
   setPilot("hand");
+}
+
+/** Ends a tapped texture after a moment. Pressing something else ends it earlier. */
+function endSoon() {
+  clearTimeout(ending);
+  ending = window.setTimeout(endAudition, TAPPED_MS);
 }
 
 /** Handlers of an element that plays a texture while it is looked at. */
@@ -39,6 +50,7 @@ export function onLook(sounding: () => Promise<Sounding | null> | Sounding | nul
   return {
     onPointerEnter: (event: PointerEvent) => event.pointerType === "mouse" && void begin(),
     onPointerLeave: (event: PointerEvent) => event.pointerType === "mouse" && endAudition(),
+    onPointerUp: (event: PointerEvent) => event.pointerType !== "mouse" && endSoon(),
     onFocus: () => void begin(),
     onBlur: endAudition,
   };

@@ -13,6 +13,9 @@ export const author = signal<Author | null>(null);
 /** The descriptors of its models. */
 export const models = computed<Model[]>(() => author.value?.models() ?? []);
 
+/** The name of a model by its id. */
+export const nameOf = (id: string) => models.value.find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
+
 export function theAuthor(): Promise<Author> {
   loading ??= setAuthor().then(loadAuthor).then(
     (loaded) => (author.value = loaded),

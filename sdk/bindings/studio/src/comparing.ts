@@ -1,12 +1,14 @@
-// Two sides that are compared, with levels matched; and blind trials.
+// The two sides that are compared, and how loud each one plays.
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import type { RecordedLoop, Texture } from "htex";
 
+import { near } from "./conditions.ts";
 import { tried } from "./engine.ts";
+import { LOUDNESS } from "./loudness.ts";
+import { sliders } from "./motion.ts";
 import { isolated } from "./names.ts";
 import { opened, presentWork, recordedLoop } from "./reference.ts";
-import { motion } from "./shadow.ts";
 import { items } from "./shelf.ts";
 import { fail, present, texture } from "./state.ts";
 
@@ -22,7 +24,8 @@ effect(() => {
   if (!tried.value) heardSide.value = null;
 });
 
-interface Played {
+/** What plays on a side. */
+export interface Played {
   readonly name: string;
   readonly texture: Texture;
   readonly model: string;
@@ -45,9 +48,9 @@ function played(id: string): Played | null {
   const loop = id.startsWith(RECORDING) ? recordedLoop(id.slice(RECORDING.length)) : null;
   if (loop === undefined) return null;
   if (loop) return { name: `the recording ${loop.recording}`, texture: now, model: modelOf(now, document.model), loop };
-  if (id === "opened" && opened.value) return { name: "as it was opened", ...opened.value };
+  if (id === "opened" && opened.value) return { name: `${opened.value.texture.name}, as it was opened`, ...opened.value };
   const model = id.startsWith("model ") ? id.slice(6) : null;
-  if (model && now.models.includes(model)) return { name: model.replace("org.htex.", ""), texture: now, model };
+  if (model && now.models.includes(model)) return { name: `${document.name} by ${model.replace("org.htex.", "")}`, texture: now, model };
   const item = items.value.find((one) => one.id === id);
   if (item) {
     // Until it is open there is nothing to play; then this is asked again.
@@ -61,23 +64,49 @@ function modelOf({ models }: Texture, wanted: string) {
   return models.includes(wanted) ? wanted : models[0] ?? "";
 }
 
-export const both = computed(() => ({ a: played(sides.value.a), b: played(sides.value.b) }));
+/** Both sides with their gains, and whether the gains match their levels. */
+export interface Pair {
+  readonly a: Played;
+  readonly b: Played;
+  readonly gains: Readonly<Record<Side, number>>;
+  readonly isMatched: boolean;
+}
+
+/** The sides that the user has chosen. */
+export const chosen = computed(() => ({ a: played(sides.value.a), b: played(sides.value.b) }));
+/** The pair of the running blind test. Edits and choices do not change it. */
+export const frozen = signal<Pair | null>(null);
+/** Whether a blind test is running. Until it ends, nothing on the page may show what sounds. */
+export const isBlind = computed(() => frozen.value !== null);
+export const both = computed(() => frozen.value ?? chosen.value);
 
 /** The level of a side at the motion of the pad's sliders. A recording has its own level. */
 function levelOf({ texture: of, model, loop }: Played) {
   if (loop) return loop.level_rms;
-  const { speed, force } = motion.peek();
-  return of.level({ model, at: { speed, force } });
+  const at = sliders.peek();
+  return of.level({ model, at }) || near(of, model, at).level;
 }
 
-/** Plays a side. A comes as loud as the piece of work, B as loud as A if levels are matched. */
+/**
+ * The pair that plays now. Each side has the usual loudness. If levels are not matched, only the
+ * stronger side has it.
+ */
+export function pair(): Pair | null {
+  const { a, b } = chosen.peek();
+  if (frozen.peek() || !a || !b) return frozen.peek();
+  const levels = [levelOf(a), levelOf(b)];
+  const [ofA = 0, ofB = 0] = levels.map((level) => LOUDNESS / (isMatched.peek() ? level : Math.max(...levels)));
+  const finite = (gain: number) => (Number.isFinite(gain) ? gain : 0);
+  return { a, b, gains: { a: finite(ofA), b: finite(ofB) }, isMatched: isMatched.peek() };
+}
+
+/** Plays a side. */
 export function play(side: Side | "x", actual: Side = side === "x" ? "a" : side) {
-  const { a, b } = both.peek();
-  const chosen = actual === "a" ? a : b;
-  if (!a || !b || !chosen) return;
-  const factor = actual === "b" && isMatched.peek() ? levelOf(a) / Math.max(levelOf(b), 1e-12) : 1;
+  const now = pair();
+  if (!now) return;
+  const { texture: of, model, loop } = now[actual];
   batch(() => {
-    tried.value = { texture: chosen.texture, model: chosen.model, gain: factor, loop: chosen.loop };
+    tried.value = { texture: of, model, gain: now.gains[actual], loop };
     heardSide.value = side;
   });
 }
@@ -85,73 +114,4 @@ export function play(side: Side | "x", actual: Side = side === "x" ? "a" : side)
 export function stop() {
   tried.value = null;
   heardSide.value = null;
-}
-
-/** Trials of ABX: X is A or B, drawn each time. */
-export const TRIALS = 10;
-
-export interface Trial {
-  readonly x: Side;
-  readonly answer: Side;
-  readonly seconds: number;
-}
-
-export const trials = signal<readonly Trial[]>([]);
-/** What X is now; null when no test is going on. */
-const hidden = signal<Side | null>(null);
-export const isTesting = computed(() => hidden.value !== null);
-let began = 0;
-
-function draw() {
-  const [bit = 0] = crypto.getRandomValues(new Uint8Array(1));
-  hidden.value = bit % 2 === 0 ? "a" : "b";
-  began = performance.now();
-}
-
-export function beginTest() {
-  trials.value = [];
-  draw();
-  play("x", hidden.peek() ?? "a");
-}
-
-export function playX() {
-  const x = hidden.peek();
-  if (x) play("x", x);
-}
-
-export function answer(given: Side) {
-  const x = hidden.peek();
-  if (!x) return;
-  trials.value = [...trials.peek(), { x, answer: given, seconds: (performance.now() - began) / 1e3 }];
-  if (trials.peek().length === TRIALS) {
-    hidden.value = null;
-    return stop();
-  }
-  draw();
-  playX();
-}
-
-export function abandon() {
-  hidden.value = null;
-  stop();
-}
-
-export const correct = computed(() => trials.value.filter(({ x, answer: given }) => x === given).length);
-
-/** Probability of at least as many right answers by guessing: a one-sided binomial test. */
-export function chance(right: number, of: number) {
-  let [sum, ways] = [0, 1];
-  for (let k = 0; k <= of; k++) {
-    if (k >= right) sum += ways;
-    ways = (ways * (of - k)) / (k + 1);
-  }
-  return sum / 2 ** of;
-}
-
-/** The trials as a table. */
-export function toCsv() {
-  const { a, b } = both.peek();
-  const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`;
-  const rows = trials.peek().map(({ x, answer: given, seconds }, i) => [i + 1, x, given, Number(x === given), seconds.toFixed(2), quoted(a?.name ?? ""), quoted(b?.name ?? ""), Number(isMatched.peek())].join(","));
-  return ["trial,x,answer,correct,seconds,a,b,levels_matched", ...rows, ""].join("\n");
 }

@@ -4,10 +4,10 @@ import { Library } from "htex";
 
 import { EXTENSIONS, isImported, takeImports } from "./imports.ts";
 import { isolated } from "./names.ts";
-import { told, withProgress, type Problem, type Work } from "./opening.ts";
+import { sayOpened, withProgress, type Problem, type Work } from "./opening.ts";
 import { openRecordings } from "./recordings.ts";
 import { addAll, lostText, type Source } from "./shelf.ts";
-import { begin, fail, say, screen } from "./state.ts";
+import { begin, fail, screen } from "./state.ts";
 
 async function bytesOf(file: File) {
   return new Uint8Array(await file.arrayBuffer());
@@ -111,8 +111,7 @@ async function takeAll(files: readonly File[], problems: Problem[]) {
     sentences.push(made.text);
     lost ||= made.lost;
   }
-  const text = [...sentences, lost, told(problems)].filter(Boolean).join(" ");
-  if (text) say(text, lost || problems.length > 0 ? "bad" : "good");
+  sayOpened(sentences, lost, problems);
 }
 
 let last: Promise<void> = Promise.resolve();

@@ -11,7 +11,7 @@ import { fail, origin, present, texture } from "./state.ts";
 export interface Sounding {
   readonly texture: Texture;
   readonly model: string;
-  /** RMS of full scale at the default condition, relative to the piece of work's; 1 for the piece itself. */
+  /** Part of full scale for a sample of one unit. Default: the loudness of the piece of work. */
   readonly gain?: number;
   /**
    * Whether it plays at its own usual loudness instead of the loudness of the piece of work: for
@@ -27,6 +27,8 @@ export const AUDIBLE = 4;
 
 /** Bands of the envelope that motors follow. */
 const BANDS = 1;
+/** Seconds in which a new node fades in. */
+const ENTERS_S = 0.01;
 
 /** "off": no press yet, so that the browser plays nothing. */
 export const sound = signal<"off" | "on" | "muted">("off");
@@ -41,6 +43,8 @@ let context: AudioContext | null = null;
 let output: GainNode | null = null;
 let meter: AnalyserNode | null = null;
 let node: HtexNode | null = null;
+/** Earlier nodes, which play until the new one sounds. */
+let leaving: HtexNode[] = [];
 /** Gain of the piece of work, which belongs to the texture that it began with. */
 let gain = 1;
 let playing: Texture | null = null;
@@ -117,17 +121,32 @@ function start(sounding: Sounding, at: number) {
   if (!context || !entrance) return;
   const { speed, force } = finger.peek();
   const options = { model: sounding.model, gain: at, bands: BANDS, ...(audible.peek() ? { pitch: AUDIBLE } : {}) };
-  node = new HtexNode(context, sounding.texture, options);
-  node.speed.value = speed;
-  node.force.value = force;
-  node.addEventListener("error", (event) => fail((event as Event & { error: Error }).error));
-  node.onenvelope = (told) => (envelope.value = { level: told.level, centroid: told.centroid });
-  node.connect(entrance);
+  const made = new HtexNode(context, sounding.texture, options);
+  const fader = new GainNode(context, { gain: leaving.length > 0 ? 0 : 1 });
+  node = made;
+  made.speed.value = speed;
+  made.force.value = force;
+  made.addEventListener("error", (event) => fail((event as Event & { error: Error }).error));
+  made.onenvelope = (told) => {
+    if (made !== node) return;
+    if (leaving.length > 0) enter(fader);
+    envelope.value = { level: told.level, centroid: told.centroid };
+  };
+  made.connect(fader).connect(entrance);
+}
+
+/** Fades in a node that sounds by now, and ends the earlier nodes. */
+function enter({ gain: part }: GainNode) {
+  const now = context?.currentTime ?? 0;
+  part.setValueAtTime(0, now);
+  part.linearRampToValueAtTime(1, now + ENTERS_S);
+  for (const old of leaving) old.stop();
+  leaving = [];
 }
 
 /** Plays a texture instead of what plays now, without a step. */
 function sounds(sounding: Sounding, piece: Texture) {
-  const at = sounding.own ? usualGain(sounding.texture, sounding.model) : gain * (sounding.gain ?? 1);
+  const at = sounding.own ? usualGain(sounding.texture, sounding.model) : sounding.gain ?? gain;
   const isNew = !node;
   if (isNew) start(sounding, at);
   if (sounding.loop) node?.load(sounding.loop, { gain: at }).catch(fail);
@@ -166,7 +185,8 @@ export function run() {
   effect(() => {
     void audible.value;
     if (!node || !playing) return;
-    node.stop();
+    // A node keeps its pitch, so this takes a new one. The old node sounds until the new one does.
+    leaving.push(node);
     node = null;
     const document = present.peek();
     const sounding = tried.peek() ?? { texture: playing, model: document?.model ?? "" };

@@ -4,6 +4,7 @@ import { effect, signal } from "@preact/signals";
 import { dualRumble } from "htex";
 
 import { envelope, playingNode } from "./engine.ts";
+import { isTouch } from "./theme.ts";
 
 export type Feel = "none" | "gamepad" | "phone";
 
@@ -22,6 +23,15 @@ function pads() {
 
 export function gamepadThere() {
   return pads().some((pad) => pad.vibrationActuator);
+}
+
+/**
+ * Whether this device has its own motor. No browser tells, and desktop browsers offer the function
+ * without a motor, so only phones count.
+ */
+export function hasMotor() {
+  const { userAgentData } = navigator as Navigator & { userAgentData?: { mobile: boolean } };
+  return "vibrate" in navigator && (userAgentData?.mobile ?? isTouch.peek());
 }
 
 /** The strengths of two motors for what plays. */

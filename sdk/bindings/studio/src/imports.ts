@@ -6,10 +6,11 @@ import { importFile, type ActuatorRange, type Asked, type Imported, type ImportF
 
 import { theImporter } from "./importer.ts";
 import { isolated } from "./names.ts";
-import { told, type Problem, type Work } from "./opening.ts";
+import { sayOpened, type Problem, type Work } from "./opening.ts";
 import { add, lostText, type Item } from "./shelf.ts";
 import { breathe } from "./slices.ts";
-import { begin, say, screen } from "./state.ts";
+import { begin, screen } from "./state.ts";
+import { troubleOf, type Trouble } from "./trouble.ts";
 
 /** Extensions of the files, as `htex formats` lists them. */
 export const EXTENSIONS = ["xml", "haptic", "ahap", "hjif", "png", "glb", "gltf"];
@@ -27,7 +28,7 @@ export interface Waiting {
   /** Whether it is imported with what is given now. */
   readonly isChosen: boolean;
   /** Why it could not be imported with what was given. */
-  readonly problem: string | null;
+  readonly problem: Trouble | null;
 }
 
 /** A file that was imported. */
@@ -55,9 +56,6 @@ export const importing = signal<string | null>(null);
 const extensionOf = (name: string) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
 export const isImported = (name: string) => name.includes(".") && EXTENSIONS.includes(extensionOf(name));
-
-/** Words in a row: "a, b and c". */
-export const list = (words: readonly string[]) => [words.slice(0, -1).join(", "), ...words.slice(-1)].filter(Boolean).join(" and ");
 
 /** How many of something, in words. */
 export const counted = (count: number, what: string) => `${count.toLocaleString("en")} ${what}${count === 1 ? "" : "s"}`;
@@ -126,10 +124,10 @@ export async function importChosen() {
   try {
     const all = chosen.map((one) => ({ ...one, settings: settingsFor(one.format) }));
     const { text, lost, problems } = await importAll(all, { step: () => {}, signal: aborting.signal });
-    waiting.value = waiting.peek().map((one) => ({ ...one, isChosen: true, problem: problems.find(({ name }) => name === one.file.name)?.text ?? null }));
+    waiting.value = waiting.peek().map((one) => ({ ...one, isChosen: true, problem: problems.find(({ name }) => name === one.file.name)?.trouble ?? null }));
     // The distance of pixels and the actuator are of these files.
     if (waiting.peek().length === 0) given.value = { ...given.peek(), pitch_mm: undefined, profiles: {} };
-    say([text, lost, told(problems)].filter(Boolean).join(" "), lost || problems.length > 0 ? "bad" : "good");
+    sayOpened([text], lost, problems);
   } finally {
     aborting = null;
   }
@@ -137,7 +135,7 @@ export async function importChosen() {
 
 /** Imports files one after the other, in a worker; puts the textures on the shelf, and the first one on the pad. */
 async function importAll(all: readonly (Known & { settings: ImportSettings })[], { step, signal: stopped }: Work) {
-  const problems: (Problem & { text: string })[] = [];
+  const problems: (Problem & { trouble: Trouble })[] = [];
   const made: Item[] = [];
   for (const { file, format, settings } of all) {
     if (stopped.aborted) break;
@@ -147,7 +145,7 @@ async function importAll(all: readonly (Known & { settings: ImportSettings })[],
       made.push(await importOne(file, format, settings, stopped, made.length === 0));
       waiting.value = waiting.peek().filter((one) => one.file !== file);
     } catch (error) {
-      if (!stopped.aborted) problems.push({ name: file.name, error, text: (error as Error).message });
+      if (!stopped.aborted) problems.push({ name: file.name, error, trouble: troubleOf(error, file.name) });
     }
   }
   importing.value = null;

@@ -2,11 +2,14 @@
 
 import type { Texture } from "htex";
 
-/** RMS of full scale at which a texture plays. */
-const LOUDNESS = 0.1;
+import { near } from "./conditions.ts";
+import { sliders } from "./motion.ts";
 
-/** The gain at which a texture has the usual loudness. */
+/** RMS of full scale at which a texture plays. */
+export const LOUDNESS = 0.1;
+
+/** The gain at which a texture has the usual loudness at the condition nearest to the sliders. */
 export function usualGain(of: Texture, model: string) {
-  const level = of.level({ model });
+  const { level } = near(of, model, sliders.peek());
   return level > 0 ? LOUDNESS / level : 0;
 }

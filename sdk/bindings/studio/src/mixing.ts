@@ -4,21 +4,45 @@ import { computed, signal } from "@preact/signals";
 import type { Author, Texture } from "htex";
 
 import { theAuthor } from "./author.ts";
+import { isSame } from "./bytes.ts";
 import { tried } from "./engine.ts";
 import { items } from "./shelf.ts";
 import { BANDS, redrawn } from "./shaping/bands.ts";
 import { make, read } from "./shaping/spec.ts";
-import { edit, present, texture } from "./state.ts";
+import { edit, origin, present, texture } from "./state.ts";
 
-/** Names of items of the shelf in the corners: upper left, upper right, lower left, lower right. The first may be the present texture. */
-export const corners = signal<readonly string[]>(["", "", "", ""]);
+/**
+ * Ids of the textures in the corners: upper left, upper right, lower left, lower right. "" is the
+ * present texture; null is a corner that nobody has chosen.
+ */
+export const corners = signal<readonly (string | null)[]>([null, null, null, null]);
 /** Where the mixture is, 0 to 1. */
 export const place = signal({ x: 0.5, y: 0.5 });
 
-const DEFAULTS = ["", "Corduroy", "Leather", "Frosted glass"];
+/** Names for corners that nobody has chosen. The upper left one has the present texture instead. */
+const DEFAULTS = ["Corduroy", "Leather", "Frosted glass", "Denim", "Oak", "Cork", "Silk"];
 
-/** A corner that is chosen, or its default. */
-export const chosen = computed(() => corners.value.map((id, i) => id || DEFAULTS[i] || ""));
+/**
+ * Id of the item of the shelf that is on the pad, unchanged. The lists of the corners leave it out,
+ * because they offer the texture on the pad.
+ */
+export const onPad = computed(() => {
+  const now = present.value;
+  return items.value.find(({ bytes }) => now && isSame(bytes, now.bytes))?.id;
+});
+
+/**
+ * The texture of each corner. A default does not repeat another corner, and is not the texture that
+ * the present one was made from.
+ */
+export const chosen = computed(() => {
+  const begun = origin.value?.bytes;
+  // A chosen texture may be on the pad by now. The texture on the pad has only one corner.
+  const all = corners.value.map((id) => (id !== null && id === onPad.value ? "" : id));
+  const own = all.map((id, i) => (id === "" && all.indexOf("") < i ? null : id));
+  const free = DEFAULTS.filter((id) => !own.includes(id) && id !== onPad.value && items.value.some((item) => item.id === id && !(begun && isSame(item.bytes, begun))));
+  return own.map((id, i) => id ?? (i === 0 && !own.includes("") ? "" : free.shift() ?? ""));
+});
 
 /** Parts of the corners. */
 export const parts = computed(() => {

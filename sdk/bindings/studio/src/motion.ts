@@ -1,6 +1,6 @@
 // The finger on the pad: where it is, how fast, and how hard it presses; moved by a hand, by keys or by the autopilot.
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 
 export type Pilot = "hand" | "steady" | "to-and-fro" | "circle" | "stroke";
 
@@ -21,6 +21,8 @@ export const pilot = signal<Pilot>("hand");
 /** Speed and force of the autopilot and of keys. */
 export const pilotSpeed = signal(80);
 export const pilotForce = signal(0.4);
+/** The motion that the sliders are set to. */
+export const sliders = computed(() => ({ speed: pilotSpeed.value, force: pilotForce.value }));
 /** Size of the pad, mm. */
 export const padSize = { width: 100, height: 100 };
 /** Points of the stroke that was drawn last: seconds and place. */
@@ -37,6 +39,11 @@ let direction: [number, number] = [1, 0.35];
 
 export function isMoving() {
   return hand || keys.size > 0 || pilot.peek() !== "hand";
+}
+
+/** Whether the autopilot slides at the speed of the sliders: no hand, no keys, no drawn stroke. */
+export function isPiloted() {
+  return !hand && keys.size === 0 && pilot.peek() !== "hand" && pilot.peek() !== "stroke";
 }
 
 function tell(change: Partial<Finger>) {

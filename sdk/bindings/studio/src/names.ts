@@ -12,3 +12,6 @@ export function isolated(name: string): string {
   const plain = withoutControls(name);
   return RIGHT_TO_LEFT.test(plain) ? ISOLATE + plain + END : plain;
 }
+
+/** Words in a row: "a, b and c". */
+export const list = (words: readonly string[]) => [words.slice(0, -1).join(", "), ...words.slice(-1)].filter(Boolean).join(" and ");

@@ -2,6 +2,10 @@
 
 import { signal } from "@preact/signals";
 
+import { isolated, list } from "./names.ts";
+import { say } from "./state.ts";
+import { troubleOf, type Trouble } from "./trouble.ts";
+
 /** A file or a texture that could not be opened, and why. */
 export interface Problem {
   readonly name: string;
@@ -55,22 +59,31 @@ export async function withProgress<T>(of: number, run: (work: Work) => Promise<T
   }
 }
 
-/** Most problems that are told one by one. */
-const MOST_TOLD = 3;
+/** Most files that are named. */
+const MOST_NAMED = 3;
 
 const counted = (count: number) => `${count.toLocaleString("en")} ${count === 1 ? "file" : "files"}`;
 
-function reason({ name, error }: Problem) {
-  const message = error instanceof Error ? error.message : String(error);
-  return message.includes(name) ? message : `${name}: ${message}`;
+/** The exact words for a problem. */
+function exact({ name, error }: Problem) {
+  const { text, details = text } = troubleOf(error, name);
+  return details.includes(name) ? details : `${name}: ${details}`;
 }
 
-/** Problems in a sentence; empty if there are none. */
-export function told(problems: readonly Problem[]) {
+/** What is said of problems; null if there are none. */
+function told(problems: readonly Problem[]): Trouble | null {
   const [first] = problems;
-  if (!first) return "";
-  if (problems.length === 1) return reason(first);
-  const rest = problems.length - MOST_TOLD;
-  const reasons = problems.slice(0, MOST_TOLD).map(reason).join("; ");
-  return `${counted(problems.length)} could not be opened: ${reasons}${rest > 0 ? `; and ${rest} more` : ""}.`;
+  if (!first) return null;
+  if (problems.length === 1) return troubleOf(first.error, first.name);
+  const names = problems.slice(0, MOST_NAMED).map(({ name }) => isolated(name));
+  const rest = problems.length - names.length;
+  const all = rest > 0 ? [...names, `${rest} more`] : names;
+  return { text: `${counted(problems.length)} could not be opened: ${list(all)}.`, details: problems.map(exact).join("\n") };
+}
+
+/** Says what came of opening files. `lost`: what was not stored; empty if all was. */
+export function sayOpened(sentences: readonly string[], lost: string, problems: readonly Problem[]) {
+  const trouble = told(problems);
+  const text = [...sentences, lost, trouble?.text].filter(Boolean).join(" ");
+  if (text) say(text, lost || trouble ? "bad" : "good", trouble?.details ? { details: trouble.details } : {});
 }

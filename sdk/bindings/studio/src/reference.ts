@@ -4,11 +4,11 @@ import { computed, effect, signal } from "@preact/signals";
 import { open, type FitReport, type MakeOptions, type RecordedLoop, type Texture } from "htex";
 
 import { author } from "./author.ts";
-
+import { near, nearest } from "./conditions.ts";
 import { isLevelKnown } from "./level.ts";
 import { fail, origin } from "./state.ts";
 import { toDecibels } from "./shaping/spec.ts";
-import { pilotForce, pilotSpeed } from "./motion.ts";
+import { sliders } from "./motion.ts";
 
 export interface Drawn {
   readonly hz: ArrayLike<number>;
@@ -69,26 +69,15 @@ export function recordedLoop(name: string): RecordedLoop | null | undefined {
   return presentWork.value && loops.value.find(({ recording }) => recording === name);
 }
 
-/** The condition nearest to a motion. */
-function conditionAt({ conditions }: Texture, speed: number, force: number) {
-  const far = (a: number, b: number) => (Number.isNaN(a) || a <= 0 ? 0 : Math.abs(Math.log(b / a)));
-  const distance = conditions.map((condition) => far(condition.speed, speed) + far(condition.force, force));
-  const found = conditions[distance.indexOf(Math.min(...distance))];
-  const known = (x: number | undefined) => (x === undefined || Number.isNaN(x) ? 0 : x);
-  return { speed: known(found?.speed), force: known(found?.force) };
-}
-
-function nearestRecorded({ report: { spectra }, conditions }: RecordedWork, speed: number, force: number): Drawn | null {
-  const far = (a: number | null, b: number) => (a === null || a <= 0 ? 0 : Math.abs(Math.log(b / a)));
-  const distance = conditions.map((condition) => far(condition.speed, speed) + far(condition.force, force));
-  const found = spectra[distance.indexOf(Math.min(...distance))];
+function nearestRecorded({ report: { spectra }, conditions }: RecordedWork): Drawn | null {
+  const found = spectra[nearest(conditions, sliders.value) ?? 0];
   return found ? { hz: found.frequency_hz, db: found.magnitude.map(toDecibels) } : null;
 }
 
 const openedDrawn = computed<Drawn | null>(() => {
   const now = opened.value;
   if (!now) return null;
-  const at = conditionAt(now.texture, pilotSpeed.value, pilotForce.value);
+  const { at } = near(now.texture, now.model, sliders.value);
   return { hz: HZ, db: Array.from(now.texture.spectrum(HZ, { model: now.model, at }), toDecibels) };
 });
 
@@ -103,6 +92,5 @@ const thresholdDrawn = computed<Drawn | null>(() => {
 
 export const reference = computed<Reference>(() => {
   const work = presentWork.value;
-  const [speed, force] = [pilotSpeed.value, pilotForce.value];
-  return { opened: openedDrawn.value, recorded: work ? nearestRecorded(work, speed, force) : null, threshold: thresholdDrawn.value };
+  return { opened: openedDrawn.value, recorded: work ? nearestRecorded(work) : null, threshold: thresholdDrawn.value };
 });

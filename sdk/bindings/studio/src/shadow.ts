@@ -3,17 +3,23 @@
 import { batch, computed, effect, signal } from "@preact/signals";
 import type { Coverage as Told, Texture, Voice } from "htex";
 
+import { isBlind } from "./comparing.ts";
+import { near } from "./conditions.ts";
 import { tried } from "./engine.ts";
-import { finger, pilotForce, pilotSpeed } from "./motion.ts";
+import { finger, isPiloted, pilotForce, pilotSpeed, sliders } from "./motion.ts";
 import { present, texture } from "./state.ts";
 
-/** The texture that sounds, and its model. */
+/** The texture that sounds, and its model; null during a blind test, which must not show it. */
 export const sounding = computed<{ texture: Texture; model: string } | null>(() => {
+  if (isBlind.value) return null;
   const [tries, now, document] = [tried.value, texture.value, present.value];
   if (tries) return { texture: tries.texture, model: tries.model };
   if (!now || !document) return null;
   return { texture: now, model: now.models.includes(document.model) ? document.model : now.models[0] ?? "" };
 });
+
+/** Index of the condition that the pad shows. */
+export const pictured = computed(() => sounding.value && near(sounding.value.texture, sounding.value.model, sliders.value).place);
 
 const voice = signal<Voice | null>(null);
 
@@ -37,6 +43,11 @@ const SHOWN_MS = 120;
 /** The finger and the motion as they are shown in numbers and words. */
 export const shownFinger = signal(finger.peek());
 export const shownMotion = signal(motion.peek());
+/**
+ * The motion that is compared with the recorded range. For the autopilot it is the motion of the
+ * sliders, because where the autopilot turns, it is slower than any recording.
+ */
+const judgedMotion = signal(motion.peek());
 let timer = 0;
 
 effect(() => {
@@ -46,6 +57,7 @@ effect(() => {
     batch(() => {
       shownFinger.value = finger.peek();
       shownMotion.value = motion.peek();
+      judgedMotion.value = isPiloted() ? { ...motion.peek(), ...sliders.peek() } : motion.peek();
     });
   }, SHOWN_MS);
 });
@@ -78,7 +90,8 @@ function sentence({ kind, speed, force, frequencyFactor, levelFactor }: Told): s
 
 /** Whether the motion is within the recorded conditions, and how it is played if not. */
 export const coverage = computed<Coverage>(() => {
-  const { speed, force, position } = shownMotion.value;
+  if (isBlind.value) return { inside: true, text: "Blind test: the page does not show what plays." };
+  const { speed, force, position } = judgedMotion.value;
   const told = voice.value?.coverage({ speed, force, position });
   return told ? { inside: told.kind !== "outside", text: sentence(told) } : { inside: true, text: "" };
 });

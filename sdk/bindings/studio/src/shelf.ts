@@ -166,7 +166,7 @@ export async function forget(gone: Item) {
   const before = notice.peek() === forgotten.told ? forgotten.items : [];
   const all = [...before, gone];
   const what = all.length === 1 ? `${isolated(gone.name)} is` : `${all.length} textures are`;
-  forgotten = { items: all, told: say(`${what} no longer on the shelf.`, "plain", () => bringBack(all)) };
+  forgotten = { items: all, told: say(`${what} no longer on the shelf.`, "plain", { undo: () => bringBack(all) }) };
   if (gone.isKept.peek()) await forgetOwn(gone.id);
   // Meanwhile another tab may have made this one read it again.
   items.value = items.peek().filter(({ id }) => id !== gone.id);

@@ -5,12 +5,15 @@ import { open, type Texture } from "htex";
 
 import { EMPTY, back, forth, isSame, step, type History } from "./history.ts";
 import { usualGain } from "./loudness.ts";
+import { troubleOf } from "./trouble.ts";
 
 export type Screen = "shelf" | "shape" | "mix" | "vary" | "compare" | "record" | "give";
 
 export interface Notice {
   text: string;
   kind: "good" | "bad" | "plain";
+  /** The exact words, behind *Details*. */
+  details?: string;
   /** Takes back what the message says. */
   undo?: (() => unknown) | undefined;
 }
@@ -31,15 +34,15 @@ export const depth = computed(() => history.value.past.length);
 /** Milliseconds after which a message goes. A message of an error stays, and one that offers Undo. */
 const SHOWN_MS = 6000;
 
-export function say(text: string, kind: Notice["kind"] = "plain", undo?: Notice["undo"]) {
-  const told = { text, kind, undo };
+export function say(text: string, kind: Notice["kind"] = "plain", more: Pick<Notice, "details" | "undo"> = {}) {
+  const told: Notice = { text, kind, ...more };
   notice.value = told;
-  if (kind !== "bad" && !undo) setTimeout(() => notice.peek() === told && (notice.value = null), SHOWN_MS);
+  if (kind !== "bad" && !more.undo) setTimeout(() => notice.peek() === told && (notice.value = null), SHOWN_MS);
   return told;
 }
 
 export function fail(error: unknown) {
-  say(error instanceof Error ? error.message : String(error), "bad");
+  notice.value = { ...troubleOf(error), kind: "bad" };
 }
 
 /** Shows a texture; the one before it is freed when nobody looks at it any more. */

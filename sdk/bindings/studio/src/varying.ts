@@ -4,6 +4,8 @@ import { effect, signal } from "@preact/signals";
 import type { Author, Texture } from "htex";
 
 import { author, theAuthor } from "./author.ts";
+import { near } from "./conditions.ts";
+import { sliders } from "./motion.ts";
 import { redrawn } from "./shaping/bands.ts";
 import { MACRO_DB, type Bench, type Macros, type Shaper } from "./shaping/shaper.ts";
 import { shaperOf } from "./shaping/shapers.ts";
@@ -66,8 +68,9 @@ function replace(next: readonly Variation[]) {
 }
 
 function nine(made: Author, now: Texture, model: string) {
-  const bench = { author: made, from: now, shown: 0 };
-  const read_ = read(now, now.models.includes(model) ? model : now.models[0] ?? model);
+  const name = now.models.includes(model) ? model : now.models[0] ?? model;
+  const bench = { author: made, from: now, shown: near(now, name, sliders.peek()).place };
+  const read_ = read(now, name);
   const spec = shaperOf(read_.model) ? read_ : redrawn(bench, read_);
   const own = spec === read_ ? null : make(made, bench, spec);
   const shaper = shaperOf(spec.model);

@@ -124,12 +124,16 @@ test("a damaged file says why, and numbers out of range do", async () => {
   const page = await openStudio(browser, FILE);
   await drop(page, "torn.ahap");
   const told = page.getByRole("status");
+  await told.getByText("torn.ahap cannot be opened. It is damaged, or it is not what its name says.").waitFor();
+  await told.getByText("Details").click();
   await told.getByText(/torn\.ahap: line \d+ column \d+: it is not JSON/).waitFor();
   assert.equal(await page.getByRole("form").count(), 0);
   await drop(page, "taps.ahap");
   const form = page.getByRole("form", { name: "Import taps.ahap" });
   for (const [label, value] of [["How strong 1 is", "0"], ["Speed, mm/s", "80"], ["Force, N", "0.4"]]) await form.getByLabel(label).fill(value);
   await form.getByRole("button", { name: "Import" }).click();
+  await told.getByText("A value is missing or too large or too small.").waitFor();
+  await told.getByText("Details").click();
   await told.getByText("full_scale 0: more than 0, at most 1e6").waitFor();
   await form.getByRole("button", { name: "Leave it out" }).click();
   await form.waitFor({ state: "detached" });

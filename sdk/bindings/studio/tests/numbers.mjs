@@ -241,9 +241,9 @@ if (wanted("input")) {
   print("input event to first sample that is not zero: median, p95", `${ms(median(times))}, ${ms(quantile(times, 0.95))} of ${times.length}`);
 }
 await shaping(page);
-await page.getByRole("button", { name: "To and fro" }).click();
+await page.getByRole("button", { name: "Back and forth" }).click();
 await page.waitForTimeout(500);
-print("one voice plays, the finger slides to and fro, all drawn", await share(5));
+print("one voice plays, the finger slides back and forth, all drawn", await share(5));
 if (wanted("slider")) {
   const times = await sliderToSamples(page);
   print("slider to new samples: median, p95", `${ms(median(times))}, ${ms(quantile(times, 0.95))} of ${times.length}`);

@@ -71,8 +71,24 @@ export async function until(page, predicate, argument) {
   while (!(await page.evaluate(predicate, argument))) await page.waitForTimeout(20);
 }
 
+/** Opens a screen, and waits until it is there. */
 export async function goTo(page, name) {
   await page.getByRole("navigation").getByRole("button", { name }).click();
+  await page.locator(".tab[aria-current]", { hasText: name }).waitFor();
+  await page.locator("main h1").waitFor();
+}
+
+/** Waits until the page was drawn some times: what an event changes is drawn after a few frames. */
+export async function frames(page, count = 6) {
+  await page.evaluate(async (wanted) => {
+    for (let i = 0; i < wanted; i++) await new Promise(requestAnimationFrame);
+  }, count);
+}
+
+/** Waits until the audio thread has played for some seconds, while the finger slides. */
+export async function sounded(page, seconds) {
+  const end = seconds + (await page.evaluate(() => htexStudio.audioContext().currentTime));
+  await page.waitForFunction((time) => htexStudio.audioContext().currentTime >= time, end);
 }
 
 /** Waits until the author module is there and handles can be moved. */

@@ -1,12 +1,13 @@
 // The recording against each model that was fitted to it.
 
+import { nameOf } from "../author.ts";
 import { isLevelKnown } from "../level.ts";
 import { rankedBy } from "../ranking.ts";
 import { presentWork } from "../reference.ts";
-import { sides } from "../comparing.ts";
+import { isBlind, sides } from "../comparing.ts";
 import { texture } from "../state.ts";
 
-export function AgainstRecording({ nameOf }: { nameOf: (id: string) => string }) {
+export function AgainstRecording() {
   const work = presentWork.value;
   const [recording, now] = [work?.names[0], texture.value];
   if (!work || !now || recording === undefined) return null;
@@ -23,7 +24,7 @@ export function AgainstRecording({ nameOf }: { nameOf: (id: string) => string })
               <p class="small">{told(id)}</p>
             </div>
             {hasModel(id) && (
-              <button class="button" onClick={() => (sides.value = { a: `recording ${recording}`, b: `model ${id}` })}>
+              <button class="button" disabled={isBlind.value} onClick={() => (sides.value = { a: `recording ${recording}`, b: `model ${id}` })}>
                 Compare by ear
               </button>
             )}

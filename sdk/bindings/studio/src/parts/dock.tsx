@@ -3,29 +3,33 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
-import { audible, heard, isRunning, sound, wake } from "../engine.ts";
+import { isBlind } from "../comparing.ts";
+import { audible, heard, isRunning, sound, volume, wake } from "../engine.ts";
 import { pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
 import { coverage, shownFinger } from "../shadow.ts";
+import { speak } from "../spoken.ts";
+import { isTouch } from "../theme.ts";
 import { Icon } from "./icons.tsx";
 import { Pad } from "./pad.tsx";
 import { Slider } from "./slider.tsx";
 
-/** Whether a phone shows the sliders of the motion; where there is room they are always there. */
+/** Whether a small window shows the controls instead of the pad. Large windows show both. */
 const hasControls = signal(false);
+
+export const showPad = () => void (hasControls.value = false);
 
 const PILOTS: { id: Pilot; name: string }[] = [
   { id: "hand", name: "Hand" },
   { id: "steady", name: "Steady" },
-  { id: "to-and-fro", name: "To and fro" },
+  { id: "to-and-fro", name: "Back and forth" },
   { id: "circle", name: "Circle" },
   { id: "stroke", name: "My stroke" },
 ];
 
 function Readings() {
   const { speed, force } = shownFinger.value;
-  const { inside, text } = coverage.value;
   return (
-    <>
+    <div class="dock-row">
       <dl class="readings">
         <div>
           <dt>Speed</dt>
@@ -39,21 +43,45 @@ function Readings() {
             <b>{force.toFixed(2)}</b> N
           </dd>
         </div>
-        <div>
+        <div class="only-wide">
           <dt>Sound</dt>
           <dd>
-            <Meter />
+            {isBlind.value ? "hidden" : <Meter />}
           </dd>
         </div>
       </dl>
-      <button class="toggle dock-more" aria-expanded={hasControls.value} onClick={() => (hasControls.value = !hasControls.value)}>
-        Motion
-      </button>
-      <p class={inside ? "coverage" : "coverage outside"}>
-        {!inside && <Icon name="warn" />}
-        {text}
-      </p>
-    </>
+      <div class="dock-quick">
+        <button class="toggle dock-back" aria-pressed={pilot.value !== "hand"} onClick={() => (wake(), setPilot(pilot.peek() === "hand" ? "to-and-fro" : "hand"))}>
+          Back and forth
+        </button>
+        <button class="toggle" onClick={() => (hasControls.value = !hasControls.value)}>
+          {hasControls.value ? "Pad" : "Controls"}
+        </button>
+      </div>
+    </div>
+  );
+}
+
+/** Milliseconds outside the recorded range before this is said. Hands often leave it briefly. */
+const OUTSIDE_MS = 800;
+
+/** Whether the motion was recorded. A message takes the place of this sentence for a while. */
+function Coverage() {
+  const { inside, text } = coverage.value;
+  useEffect(() => {
+    if (inside) return;
+    let end = () => {};
+    const timer = setTimeout(() => (end = speak(coverage.peek().text)), OUTSIDE_MS);
+    return () => {
+      clearTimeout(timer);
+      end();
+    };
+  }, [inside]);
+  return (
+    <p class={inside ? "coverage" : "coverage outside"}>
+      {!inside && <Icon name="warn" />}
+      {text}
+    </p>
   );
 }
 
@@ -96,18 +124,25 @@ function Pilots() {
   );
 }
 
-export function Dock() {
+/** The pad with its controls. The children are the message. */
+export function Dock({ children }: { children: preact.ComponentChildren }) {
   return (
-    <aside class="dock" aria-label="Pad">
+    <aside class={hasControls.value ? "dock controlled" : "dock"} aria-label="Pad">
       <Pad />
       <Readings />
-      <div class={hasControls.value ? "dock-controls" : "dock-controls folded"}>
+      <div class="sentence">
+        {children}
+        <Coverage />
+      </div>
+      <div class="dock-controls">
         <Pilots />
         <Slider label="Speed" unit="mm/s" min={5} max={400} value={pilotSpeed.value} isLog digits={0} onValue={(value) => (pilotSpeed.value = value)} />
         <Slider label="Force" unit="N" min={0.05} max={3} value={pilotForce.value} isLog digits={2} onValue={(value) => (pilotForce.value = value)} />
+        <Slider label="Volume" min={0} max={1} step={0.01} isNarrow value={volume.value} onValue={(value) => (volume.value = value)} />
         <p class="hint">
           {sound.value === "off" ? "Sound begins with your first press. " : ""}
-          {audible.value ? "Audible ×4: frequencies are four times as high, which is not what a finger feels." : "Headphones are best: small loudspeakers have no low frequencies."} Esc silences.
+          {audible.value ? "Audible ×4: all frequencies are four times as high, which is not what a finger feels." : "Use headphones: small loudspeakers play no low frequencies."}
+          {!isTouch.value && " Press Esc for silence."}
         </p>
       </div>
     </aside>

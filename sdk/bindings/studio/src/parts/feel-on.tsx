@@ -2,26 +2,37 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
-import { feelOn, gamepadThere, outputs, startFeeling, type Feel } from "../feel.ts";
+import { feelOn, gamepadThere, hasMotor, outputs, startFeeling, type Feel } from "../feel.ts";
 import { canChooseOutput, sendTo } from "../engine.ts";
 import { fail, say } from "../state.ts";
 import { Icon } from "./icons.tsx";
 
-const WAYS: { id: Feel; name: string; limit: string; there: () => boolean }[] = [
-  { id: "none", name: "Sound alone", limit: "Loudspeakers and headphones play what a finger would feel.", there: () => true },
-  {
-    id: "gamepad",
-    name: "Gamepad",
-    limit: "Two motors follow the level and the pitch. They cannot play the texture's frequencies, and they lag by some 50 ms.",
-    there: gamepadThere,
-  },
-  {
-    id: "phone",
-    name: "Vibration of this device",
-    limit: "The motor is on or off, in pulses as long as the level is high. It has one frequency of its own.",
-    there: () => "vibrate" in navigator,
-  },
-];
+interface Way {
+  readonly id: Feel;
+  readonly name: string;
+  readonly limit: string;
+  /** Whether it can be chosen now. */
+  readonly there: () => boolean;
+}
+
+/** What a way needs that can still be connected. */
+const ABSENT = "No gamepad is connected.";
+
+const SOUND: Way = { id: "none", name: "Sound only", limit: "Loudspeakers and headphones play what a finger would feel.", there: () => true };
+const GAMEPAD: Way = {
+  id: "gamepad",
+  name: "Gamepad",
+  limit: "Two motors follow the level and the pitch. They cannot play the texture's frequencies, and they react about 50 ms late.",
+  there: gamepadThere,
+};
+const PHONE: Way = {
+  id: "phone",
+  name: "This phone's vibration",
+  limit: "The motor is either on or off, and it has one frequency of its own. The stronger the texture, the longer the pulses.",
+  there: () => true,
+};
+
+const ways = () => (hasMotor() ? [SOUND, GAMEPAD, PHONE] : [SOUND, GAMEPAD]);
 
 export function FeelOn() {
   const [isOpen, setOpen] = useState(false);
@@ -37,7 +48,7 @@ export function FeelOn() {
       document.removeEventListener("keydown", escape);
     };
   }, [isOpen]);
-  const choose = (id: string) => sendTo(id).then(() => say("The volume is at 0 for the new output. Raise it slowly.", "plain"), fail);
+  const choose = (id: string) => sendTo(id).then(() => say("The volume is now 0, for the new output. Raise it slowly.", "plain"), fail);
   return (
     <div class="menu" ref={menu}>
       <button class="toggle" aria-expanded={isOpen} onClick={() => (setOpen(!isOpen), void outputs.refresh())}>
@@ -45,16 +56,16 @@ export function FeelOn() {
       </button>
       {isOpen && (
         <div class="menu-sheet" role="group" aria-label="Feel it on">
-          {WAYS.map(({ id, name, limit, there }) => (
+          {ways().map(({ id, name, limit, there }) => (
             <button key={id} class="menu-item" aria-pressed={feelOn.value === id} disabled={!there()} onClick={() => startFeeling(id)}>
               <b>{name}</b>
-              <small>{there() ? limit : `${limit} There is none here.`}</small>
+              <small>{there() ? limit : `${limit} ${ABSENT}`}</small>
             </button>
           ))}
           {canChooseOutput() ? (
             <label class="menu-item">
               <b>Another output, such as a shaker on an amplifier</b>
-              <small>It gets the sound as it is, without calibration and without the guards of the command. Gain begins at 0.</small>
+              <small>It gets the sound unchanged, without calibration and without the safety limits of the htex command. The volume starts at 0.</small>
               <select onChange={(event) => choose(event.currentTarget.value)}>
                 <option value="">The system's output</option>
                 {outputs.list.value.map(({ id, name }) => (
@@ -66,7 +77,7 @@ export function FeelOn() {
             </label>
           ) : (
             <p class="menu-item">
-              <small>This browser cannot choose an output; choose it in the system's settings.</small>
+              <small>This browser cannot choose an output. Choose it in the system's settings.</small>
             </p>
           )}
         </div>

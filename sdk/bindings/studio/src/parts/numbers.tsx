@@ -61,7 +61,7 @@ export function Numbers() {
         })}
         {point && (
           <p class="small soft">
-            Level {Number((point.level * 1e3).toPrecision(4))} thousandths of the unit, RMS. Numbers change the shown condition alone.
+            Level (RMS): {Number((point.level * 1e3).toPrecision(4))} thousandths of the unit. Numbers change only the displayed condition.
           </p>
         )}
       </div>

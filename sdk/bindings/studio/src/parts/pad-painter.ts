@@ -2,8 +2,9 @@
 
 import { effect } from "@preact/signals";
 
-import { finger } from "../motion.ts";
-import { sounding } from "../shadow.ts";
+import { near } from "../conditions.ts";
+import { finger, sliders } from "../motion.ts";
+import { pictured, sounding } from "../shadow.ts";
 import { isCalm, scheme } from "../theme.ts";
 import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
 
@@ -31,8 +32,10 @@ export class PadPainter {
     observer.observe(canvas);
     this.ends = [
       effect(() => {
-        void sounding.value;
+        void pictured.value;
         void scheme.value;
+        // During a blind test there is no texture to show: the pad is bare at once.
+        if (!sounding.value) return this.wish();
         if (!this.drawing) this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
         else this.isStale = true;
       }),
@@ -65,7 +68,8 @@ export class PadPainter {
     this.timer = 0;
     const now = sounding.peek();
     if (!now) return;
-    const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model });
+    const { at } = near(now.texture, now.model, sliders.peek());
+    const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model, at });
     this.drawing = relief(magnitude, colour("--grain-dark"), colour("--grain-light"));
     this.draw(this.drawing);
   }
@@ -100,7 +104,7 @@ export class PadPainter {
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
     const scale = Math.min(devicePixelRatio, 2);
-    if (this.tile) this.grain(pen, width, height, scale);
+    if (this.tile && sounding.peek()) this.grain(pen, width, height, scale);
     if (force > 0) this.touch(pen, x * width, y * height, scale, force, speed);
   }
 

@@ -3,10 +3,12 @@
 import { useEffect, useRef } from "preact/hooks";
 import { followPointer } from "htex";
 
+import { isBlind } from "../comparing.ts";
 import { sound, wake } from "../engine.ts";
 import { byHand, byKey, finger, handLeaves, padSize, pilot, pilotForce, releaseKeys, setPilot, stroke } from "../motion.ts";
 import { present } from "../state.ts";
 import { coverage, sounding } from "../shadow.ts";
+import { isTouch } from "../theme.ts";
 import { PadPainter } from "./pad-painter.ts";
 
 /** Force of a pen's full pressure, N. */
@@ -61,7 +63,8 @@ function attach(element: HTMLElement) {
   };
   const end = followPointer(element, moved, { force, mmPerPixel: 1 });
   const observer = new ResizeObserver(() => {
-    padSize.height = (padSize.width * element.clientHeight) / Math.max(element.clientWidth, 1);
+    // A hidden pad keeps its size, because the path of the autopilot depends on it.
+    if (element.clientHeight > 0) padSize.height = (padSize.width * element.clientHeight) / element.clientWidth;
   });
   observer.observe(element);
   return () => {
@@ -100,21 +103,22 @@ export function Pad() {
     };
   }, []);
   const { inside } = coverage.value;
-  const name = sounding.value?.texture.name ?? present.value?.name ?? "no texture";
+  const name = isBlind.value ? "a blind test" : sounding.value?.texture.name ?? present.value?.name ?? "no texture";
   return (
     <div class={inside ? "pad" : "pad outside"}>
       <canvas
         ref={canvas}
+        id="pad"
         tabIndex={0}
         role="application"
-        aria-label={`Pad of ${name}. Arrow keys slide, Shift slides faster, 1 to 5 press harder, Space slides to and fro.`}
+        aria-label={`Pad of ${name}. ${isTouch.value ? "Press and slide." : "Arrow keys slide, Shift slides faster, 1 to 5 press harder, Space slides back and forth."}`}
         onKeyDown={keyDown}
         onKeyUp={(event) => byKey(event.key, false, event.shiftKey)}
         onBlur={releaseKeys}
         onContextMenu={(event) => event.preventDefault()}
       />
       <p class="pad-hint keys" aria-hidden="true">
-        Arrows slide, Shift faster · 1–5 press · Space to and fro
+        Arrows slide, Shift faster · 1–5 press · Space slides back and forth
       </p>
       {sound.value === "off" && <p class="pad-hint">Press and slide</p>}
     </div>

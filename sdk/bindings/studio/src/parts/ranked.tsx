@@ -2,9 +2,9 @@
 
 import type { FitReport } from "htex";
 
-import { fail } from "../state.ts";
+import { nameOf } from "../author.ts";
 import { rankedBy } from "../ranking.ts";
-import { nameOf } from "../screens/shape.tsx";
+import { fail } from "../state.ts";
 
 interface Props {
   report: Pick<FitReport, "ranked"> & { models: readonly Omit<FitReport["models"][number], "fit_ms">[] };

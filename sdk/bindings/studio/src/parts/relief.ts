@@ -101,10 +101,24 @@ export function* relief(magnitude: ArrayLike<number>, dark: Colour, light: Colou
 
 export type Colour = readonly [number, number, number];
 
+const HEX = /^#(..)(..)(..)$/;
+
+let resolver: OffscreenCanvasRenderingContext2D | null = null;
+
+/** A colour that only the browser can resolve, e.g. `Highlight`. */
+function resolved(text: string): Colour {
+  resolver ??= new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
+  if (!resolver) return [128, 128, 128];
+  resolver.fillStyle = text;
+  resolver.fillRect(0, 0, 1, 1);
+  const [red = 128, green = 128, blue = 128] = resolver.getImageData(0, 0, 1, 1).data;
+  return [red, green, blue];
+}
+
 /** A colour of the style sheet, such as `--grain-dark`, as red, green and blue. */
 export function colour(name: string): Colour {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const hex = /^#(..)(..)(..)$/.exec(text);
-  if (!hex) return [128, 128, 128];
+  const hex = HEX.exec(text);
+  if (!hex) return resolved(text);
   return [1, 2, 3].map((i) => Number.parseInt(hex[i] as string, 16)) as unknown as Colour;
 }

@@ -1,7 +1,11 @@
 // A small spectrum: dB over the logarithm of frequency, 20 to 1000 Hz.
 
+import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Texture } from "htex";
+
+import { near, type Slid } from "../conditions.ts";
+import { sliders } from "../motion.ts";
 
 const POINTS = 72;
 /** Frequencies that are looked at for each point, so that no line of a spectrum is missed. */
@@ -12,8 +16,8 @@ const RANGE_DB = 45;
 const [WIDTH, HEIGHT] = [160, 44];
 
 /** The outline of a spectrum as a path, closed at the bottom. */
-export function outline(texture: Texture, model: string): string {
-  const fine = texture.spectrum(HZ, { model });
+export function outline(texture: Texture, model: string, at: Slid): string {
+  const fine = texture.spectrum(HZ, { model, at });
   const decibels = Array.from({ length: POINTS }, (_, i) => 20 * Math.log10(Math.max(1e-12, ...fine.subarray(i * FINE, (i + 1) * FINE))));
   const top = Math.max(...decibels);
   const points = decibels.map((db, i) => {
@@ -29,7 +33,9 @@ export function NoSparkline() {
 }
 
 export function Sparkline({ texture, model }: { texture: Texture; model: string }) {
-  const path = useMemo(() => outline(texture, model), [texture, model]);
+  // Drawn anew only when the sliders choose another condition.
+  const place = useMemo(() => computed(() => near(texture, model, sliders.value).place), [texture, model]).value;
+  const path = useMemo(() => outline(texture, model, near(texture, model, sliders.peek()).at), [texture, model, place]);
   return (
     <svg class="sparkline" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} preserveAspectRatio="none" aria-hidden="true">
       <path d={path} />

@@ -1,6 +1,6 @@
 // Paints the spectrum: grid, threshold, curves, bars and handles.
 
-import { TICKS_HZ, toX, toY, type Scale } from "./spectrum-scale.ts";
+import { TICKS_HZ, placeOf, toX, toY, type Scale } from "./spectrum-scale.ts";
 
 export type Style = "played" | "model" | "before" | "recording" | "threshold";
 
@@ -122,7 +122,7 @@ function bars(pen: CanvasRenderingContext2D, { scale, marks, selected }: Picture
 }
 
 function dot(pen: CanvasRenderingContext2D, scale: Scale, mark: Mark, isBar: boolean, isSelected: boolean, hasFocus: boolean, colour: (name: string) => string) {
-  const [x, y] = [toX(scale, mark.hz), Math.min(toY(scale, mark.db), scale.top + scale.height)];
+  const [x, y] = placeOf(scale, mark);
   const radius = isBar ? (isSelected ? 6 : 3) : isSelected ? 9 : 7;
   pen.beginPath();
   pen.arc(x, y, radius, 0, 2 * Math.PI);

@@ -16,7 +16,13 @@ export interface Scale {
 export const toX = (scale: Scale, hz: number) => scale.left + (scale.width * Math.log(hz / LOW_HZ)) / Math.log(HIGH_HZ / LOW_HZ);
 export const toY = (scale: Scale, db: number) => scale.top + (scale.height * (scale.ceiling - db)) / (scale.ceiling - scale.floor);
 export const toHz = (scale: Scale, x: number) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** Math.min(Math.max((x - scale.left) / scale.width, 0), 1);
-export const toDb = (scale: Scale, y: number) => scale.ceiling - ((y - scale.top) / scale.height) * (scale.ceiling - scale.floor);
+export const toDb = (scale: Scale, y: number) => scale.ceiling - Math.min(Math.max((y - scale.top) / scale.height, 0), 1) * (scale.ceiling - scale.floor);
+
+/** Where a handle is painted. A handle beyond the axes is painted at their edge. */
+export const placeOf = (scale: Scale, { hz, db }: { readonly hz: number; readonly db: number }): [number, number] => [
+  toX(scale, Math.min(Math.max(hz, LOW_HZ), HIGH_HZ)),
+  toY(scale, Math.min(Math.max(db, scale.floor), scale.ceiling)),
+];
 
 /**
  * The range of decibels that is shown: it covers the curves, in steps of 10 dB, and is at least 50

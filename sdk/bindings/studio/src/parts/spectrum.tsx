@@ -5,13 +5,16 @@ import { useEffect, useRef, useState } from "preact/hooks";
 
 import { scheme } from "../theme.ts";
 import { paintSpectrum, type Curve } from "./spectrum-painter.ts";
-import { rangeOf, toDb, toHz, toX, toY, type Scale } from "./spectrum-scale.ts";
+import { placeOf, rangeOf, toDb, toHz, type Scale } from "./spectrum-scale.ts";
 import type { Drawn, Handle } from "../shaping/shaper.ts";
 
 /** How near a press has to be to a handle, pixels. */
 const NEAR = 30;
-/** Steps of the arrow keys. */
+/** How near a finger has to be above or below the top of a bar. Elsewhere it scrolls the screen. */
+const NEAR_TOP = 44;
+/** Steps of the arrow keys, and of Page Up and Page Down. */
 const STEP_DB = 1;
+const PAGE_DB = 6;
 const STEP_RATIO = 2 ** (1 / 24);
 /** Milliseconds between two drawings of what follows the finger. */
 const LIVE_MS = 33;
@@ -24,6 +27,9 @@ export interface SpectrumProps {
   /** What tells that the live curve may have changed. */
   watch?: () => unknown;
   handles: readonly Handle[];
+  /** Index of the chosen handle. */
+  selected: number;
+  onSelect: (handle: number) => void;
   hasBars: boolean;
   onMove: (handle: number, hz: number, db: number) => void;
   /** Bars were drawn across. */
@@ -36,10 +42,10 @@ export interface SpectrumProps {
 
 export function Spectrum(props: SpectrumProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const [selected, select] = useState(0);
   const [hasFocus, focus] = useState(false);
-  const kept = useRef({ ...props, selected, hasFocus, scale: null as Scale | null, dragged: -1, drawnDb: null as number | null, frame: 0, wanted: null as [number, number] | null });
-  Object.assign(kept.current, props, { selected: Math.min(selected, Math.max(props.handles.length - 1, 0)), hasFocus });
+  const kept = useRef({ ...props, hasFocus, scale: null as Scale | null, dragged: -1, drawnDb: null as number | null, frame: 0, wanted: null as [number, number] | null });
+  Object.assign(kept.current, props, { hasFocus });
+  const select = (handle: number) => kept.current.onSelect(handle);
 
   const wish = () => {
     const state = kept.current;
@@ -51,6 +57,10 @@ export function Spectrum(props: SpectrumProps) {
     if (!place) return;
     const observer = new ResizeObserver(() => wish());
     observer.observe(place);
+    // A finger that has a handle does not scroll. Pointer events come before touch events, so it
+    // has the handle by then.
+    const touch = (event: TouchEvent) => kept.current.dragged >= 0 && event.preventDefault();
+    place.addEventListener("touchstart", touch, { passive: false });
     let timer = 0;
     const later = () => {
       timer = 0;
@@ -63,6 +73,7 @@ export function Spectrum(props: SpectrumProps) {
     });
     return () => {
       observer.disconnect();
+      place.removeEventListener("touchstart", touch);
       end();
       clearTimeout(timer);
       cancelAnimationFrame(kept.current.frame);
@@ -77,7 +88,7 @@ export function Spectrum(props: SpectrumProps) {
     const { scale, handles, hasBars } = kept.current;
     if (!scale || event.button !== 0) return;
     const found = nearest(scale, handles, hasBars, at(event));
-    if (found < 0) return;
+    if (found < 0 || (event.pointerType === "touch" && !isNearTop(scale, handles[found], at(event)))) return;
     canvas.current?.setPointerCapture(event.pointerId);
     Object.assign(kept.current, { dragged: found, drawnDb: null });
     select(found);
@@ -85,7 +96,7 @@ export function Spectrum(props: SpectrumProps) {
   };
   const drag = (event: PointerEvent) => {
     const state = kept.current;
-    if (state.dragged < 0 || !state.scale) return;
+    if (state.dragged < 0 || !state.scale || event.buttons === 0) return;
     const isWaiting = state.wanted !== null;
     state.wanted = at(event);
     // The hand may be faster than the frames.
@@ -103,8 +114,12 @@ export function Spectrum(props: SpectrumProps) {
   };
   const up = () => {
     if (kept.current.dragged < 0) return;
-    kept.current.dragged = -1;
-    requestAnimationFrame(() => kept.current.onSettle());
+    // The last move may still wait for this frame. Then the axes follow.
+    requestAnimationFrame(() => {
+      kept.current.dragged = -1;
+      kept.current.onSettle();
+      wish();
+    });
   };
   const add = (event: MouseEvent) => {
     const { scale, onAdd } = kept.current;
@@ -112,7 +127,7 @@ export function Spectrum(props: SpectrumProps) {
     if (scale) onAdd?.(toHz(scale, x), toDb(scale, y));
   };
   const key = (event: KeyboardEvent) => {
-    const { handles, selected: now } = kept.current;
+    const { handles, selected: now, scale } = kept.current;
     const handle = handles[now];
     if (!handle) return;
     const free = event.altKey || event.shiftKey;
@@ -122,13 +137,16 @@ export function Spectrum(props: SpectrumProps) {
       kept.current.onMove(now, handle.hz * (event.key === "ArrowRight" ? STEP_RATIO : 1 / STEP_RATIO), handle.db);
     } else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
       select(Math.min(Math.max(now + (event.key === "ArrowRight" ? 1 : -1), 0), handles.length - 1));
+    } else if (event.key === "PageUp" || event.key === "PageDown") {
+      kept.current.onMove(now, handle.hz, handle.db + (event.key === "PageUp" ? PAGE_DB : -PAGE_DB));
+    } else if ((event.key === "Home" || event.key === "End") && scale) {
+      kept.current.onMove(now, handle.hz, event.key === "Home" ? scale.floor : scale.ceiling);
     } else if (event.key === "Delete" || event.key === "Backspace") {
       kept.current.onRemove?.(now);
     } else return;
     event.preventDefault();
   };
-  const handle = props.handles[kept.current.selected];
-  const text = handle ? `${handle.name}, ${handle.hz.toFixed(0)} Hz, ${handle.db.toFixed(0)} dB` : "";
+  const handle = props.handles[props.selected];
   return (
     <div class="spectrum">
       <canvas
@@ -136,7 +154,7 @@ export function Spectrum(props: SpectrumProps) {
         tabIndex={handle ? 0 : undefined}
         role={handle ? "slider" : "img"}
         aria-label={props.label}
-        {...(handle ? { "aria-valuenow": Math.round(handle.db), "aria-valuemin": -120, "aria-valuemax": 80, "aria-valuetext": text } : {})}
+        {...(handle ? { "aria-valuenow": Math.round(handle.db), "aria-valuetext": describe(handle) } : {})}
         onPointerDown={down}
         onPointerMove={drag}
         onPointerUp={up}
@@ -147,10 +165,12 @@ export function Spectrum(props: SpectrumProps) {
         onFocus={() => focus(true)}
         onBlur={() => focus(false)}
       />
-      <output class="spectrum-told">{text}</output>
     </div>
   );
 }
+
+/** A handle in words. */
+export const describe = ({ name, hz, db }: Handle) => `${name}, ${hz.toFixed(0)} Hz, ${db.toFixed(0)} dB`;
 
 /** Sets all bars from the last one to the pointer's bar to a line between the two. */
 function draw(state: Painted, x: number, y: number) {
@@ -168,19 +188,30 @@ function draw(state: Painted, x: number, y: number) {
 
 /** The handle of a press; of bars the one below or above it. */
 function nearest(scale: Scale, handles: readonly Handle[], hasBars: boolean, [x, y]: [number, number]) {
-  const far = handles.map(({ hz, db }) => Math.hypot(toX(scale, hz) - x, hasBars ? 0 : toY(scale, db) - y));
+  const places = handles.map((handle) => placeOf(scale, handle));
+  const far = places.map(([left, top]) => Math.hypot(left - x, hasBars ? 0 : top - y));
   const least = Math.min(...far);
   return hasBars || least < NEAR ? far.indexOf(least) : -1;
 }
 
+/** Whether a press is about as high as a handle. */
+function isNearTop(scale: Scale, handle: Handle | undefined, [, y]: [number, number]) {
+  return handle !== undefined && Math.abs(placeOf(scale, handle)[1] - y) < NEAR_TOP;
+}
+
 interface Painted extends SpectrumProps {
-  selected: number;
   hasFocus: boolean;
   scale: Scale | null;
   dragged: number;
   /** Decibels of the bar that was drawn last. */
   drawnDb: number | null;
   frame: number;
+}
+
+/** Tells the range of a handle to screen readers. It is known only once the axes are. */
+function tellRange(canvas: HTMLCanvasElement, { floor, ceiling }: Scale, handle: Handle | undefined) {
+  canvas.ariaValueMin = handle ? String(Math.round(Math.min(floor, handle.db))) : null;
+  canvas.ariaValueMax = handle ? String(Math.round(Math.max(ceiling, handle.db))) : null;
 }
 
 function paint(canvas: HTMLCanvasElement | null, state: Painted) {
@@ -194,8 +225,10 @@ function paint(canvas: HTMLCanvasElement | null, state: Painted) {
   const live = state.live?.();
   // While a handle is dragged, the axes stay.
   const kept = state.dragged >= 0 && state.scale;
-  const range = kept || rangeOf(state.curves.filter(({ style }) => style !== "threshold").map(({ db }) => db));
+  const shown = state.curves.filter(({ style }) => style !== "threshold").map(({ db }) => db);
+  const range = kept || rangeOf([...shown, state.handles.map(({ db }) => db)]);
   state.scale = { left: 44, top: 10, width: width - 58, height: height - 40, floor: range.floor, ceiling: range.ceiling };
+  tellRange(canvas, state.scale, state.handles[state.selected]);
   const curves = live ? [...state.curves, live] : state.curves;
   paintSpectrum(pen, ratio, { scale: state.scale, curves, marks: state.handles, hasBars: state.hasBars, selected: state.handles.length > 0 ? state.selected : -1, hasFocus: state.hasFocus });
 }

@@ -1,19 +1,22 @@
 // What stands above: the texture's name, undo and redo, and the sound.
 
+import { isBlind } from "../comparing.ts";
 import { audible, sound, toggleSound, volume } from "../engine.ts";
 import { depth, fail, origin, present, redo, redoable, screen, undo, undoable } from "../state.ts";
 import { refusal } from "../store.ts";
+import { isTouch } from "../theme.ts";
 import { FeelOn } from "./feel-on.tsx";
 import { Icon } from "./icons.tsx";
 import { Name } from "./name.tsx";
 
 function History() {
+  const [undoKeys, redoKeys] = isTouch.value ? ["", ""] : [" (Ctrl Z)", " (Ctrl Shift Z)"];
   return (
     <div class="group">
-      <button class="icon-button" disabled={!undoable.value} title={undoable.value ? `Undo: ${undoable.value} (Ctrl Z)` : "Nothing to undo"} aria-label="Undo" onClick={() => undo().catch(fail)}>
+      <button class="icon-button" disabled={!undoable.value} title={undoable.value ? `Undo: ${undoable.value}${undoKeys}` : "Nothing to undo"} aria-label="Undo" onClick={() => undo().catch(fail)}>
         <Icon name="undo" />
       </button>
-      <button class="icon-button" disabled={!redoable.value} title={redoable.value ? `Redo: ${redoable.value} (Ctrl Shift Z)` : "Nothing to redo"} aria-label="Redo" onClick={() => redo().catch(fail)}>
+      <button class="icon-button" disabled={!redoable.value} title={redoable.value ? `Redo: ${redoable.value}${redoKeys}` : "Nothing to redo"} aria-label="Redo" onClick={() => redo().catch(fail)}>
         <Icon name="redo" />
       </button>
     </div>
@@ -24,11 +27,11 @@ function Sound() {
   const isOn = sound.value === "on";
   return (
     <div class="group">
-      <button class="icon-button" aria-pressed={isOn} aria-label="Sound" title={isOn ? "Sound is on. Use headphones: small loudspeakers have no low frequencies. Esc silences." : "Turn the sound on"} onClick={toggleSound}>
+      <button class="icon-button" aria-pressed={isOn} aria-label="Sound" title={isOn ? `Sound is on. Use headphones, because small loudspeakers play no low frequencies.${isTouch.value ? "" : " Press Esc for silence."}` : "Turn the sound on"} onClick={toggleSound}>
         <Icon name={isOn ? "sound" : "muted"} />
       </button>
       <input class="volume" type="range" min="0" max="1" step="0.01" aria-label="Volume" value={volume.value} onInput={(event) => (volume.value = event.currentTarget.valueAsNumber)} />
-      <button class="toggle" aria-pressed={audible.value} title="Plays all frequencies four times as high, for small loudspeakers. It is then not what a finger feels." onClick={() => (audible.value = !audible.value)}>
+      <button class="toggle" aria-pressed={audible.value} disabled={isBlind.value} title="Plays all frequencies four times as high, for small loudspeakers. A finger would feel the original frequencies." onClick={() => (audible.value = !audible.value)}>
         <span>
           <span class="wide">Audible </span>×4{audible.value && " on"}
         </span>
@@ -54,7 +57,7 @@ export function Top() {
       <History />
       <Sound />
       <FeelOn />
-      <button class="toggle roomy" title="Name it, and save it as a file" onClick={() => (screen.value = "give")}>
+      <button class="toggle roomy" title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>
         <Icon name="give" /> Save…
       </button>
     </header>

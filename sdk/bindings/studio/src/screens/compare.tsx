@@ -7,15 +7,18 @@ import { AgainstRecording } from "../parts/against-recording.tsx";
 import { Difference } from "../parts/difference.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { Name } from "../parts/name.tsx";
+import { Spoken, useSpoken } from "../parts/spoken.tsx";
 import { save } from "../save.ts";
-import { nameOf } from "./shape.tsx";
-import { abandon, answer, beginTest, both, chance, choices, correct, heardSide, isMatched, isTesting, play, playX, sides, stop, toCsv, trials, TRIALS, type Side } from "../comparing.ts";
+import { isTouch } from "../theme.ts";
+import { abandon, answer, beginTest, chance, playX, result, toCsv, TRIALS, type Result } from "../blind-test.ts";
+import { both, choices, heardSide, isBlind, isMatched, play, sides, stop, type Side } from "../comparing.ts";
+import { fail } from "../state.ts";
 
 function Chooser({ side }: { side: Side }) {
   return (
     <label class="field">
       {side.toUpperCase()}
-      <select value={sides.value[side]} disabled={isTesting.value} onChange={(event) => (sides.value = { ...sides.peek(), [side]: event.currentTarget.value })}>
+      <select value={sides.value[side]} disabled={isBlind.value} onChange={(event) => (sides.value = { ...sides.peek(), [side]: event.currentTarget.value })}>
         {choices.value.map(({ id, name }) => (
           <option key={id} value={id}>
             {name}
@@ -51,26 +54,58 @@ function Play({ side, name }: { side: Side | "x"; name: string }) {
   );
 }
 
-function Result() {
-  const count = trials.value.length;
-  if (count === 0) return null;
-  const right = correct.value;
-  if (count < TRIALS) return <p role="status">{count} of {TRIALS} answered.</p>;
+/** What the number of right answers means. */
+function meaning(right: number, count: number) {
+  if (chance(right, count) >= 0.05) return "Nothing shows that you can tell them apart: guessing often gives such a result.";
+  if (right > count / 2) return "You can tell them apart: guessing is right this often in fewer than one of twenty tests.";
+  return "You can tell them apart, but you take A for B and B for A: guessing is wrong this often in fewer than one of twenty tests.";
+}
+
+function SaveTable() {
+  return (
+    <button class="button" onClick={() => save(new TextEncoder().encode(toCsv()), "abx.csv", "text/csv")}>
+      Save as CSV
+    </button>
+  );
+}
+
+function Results() {
+  const found = result.value;
+  if (!found || found.trials.length === 0) return null;
+  const count = found.trials.length;
+  if (count < TRIALS) return <p><Spoken text={`${count} of ${TRIALS} answered.`} /></p>;
+  return found.isOther ? <OtherPair of={found} /> : <Outcome of={found} />;
+}
+
+function OtherPair({ of: { pair } }: { of: Result }) {
+  return (
+    <div class="stack">
+      <p class="soft small">
+        The last test compared {pair.a.name} with {pair.b.name}. Levels were {pair.isMatched ? "" : "not "}matched. Choose the same again to see the result.
+      </p>
+      <SaveTable />
+    </div>
+  );
+}
+
+function Outcome({ of: { pair, trials, right } }: { of: Result }) {
+  const count = trials.length;
+  useSpoken(`${right} of ${count} right.`);
   const p = chance(right, count);
   return (
-    <div class="stack" role="status">
+    <div class="stack">
       <p>
-        <b>{right} of {count} right</b>, p = {p < 0.001 ? "< 0.001" : p.toFixed(3)}.{" "}
-        {p < 0.05 ? "Guessing is this good in fewer than one of twenty tests: you tell them apart." : "Guessing would do as well: nothing shows that you tell them apart."}
+        <b>{right} of {count} right</b>, p = {p < 0.001 ? "< 0.001" : p.toFixed(3)}. {meaning(right, count)}
+      </p>
+      <p class="soft small">
+        A was {pair.a.name}, and B was {pair.b.name}. Levels were {pair.isMatched ? "" : "not "}matched. p is the probability that guessing gives a result at least this far from half right (two-sided binomial test).
       </p>
       <ol class="trials">
-        {trials.value.map(({ x, answer: given }, i) => (
+        {trials.map(({ x, answer: given }, i) => (
           <li key={i}>{x === given ? "right" : "wrong"}</li>
         ))}
       </ol>
-      <button class="button" onClick={() => save(new TextEncoder().encode(toCsv()), "abx.csv", "text/csv")}>
-        Save as CSV
-      </button>
+      <SaveTable />
     </div>
   );
 }
@@ -79,8 +114,10 @@ function Abx() {
   return (
     <div class="panel stack">
       <h2>Blind test</h2>
-      <p class="soft small">Ten times X is A or B, drawn anew. Say which. Slide, or press To and fro.</p>
-      {isTesting.value ? (
+      <p class="soft small">
+        In each of ten trials, X is either A or B at random. Say which one it is. Slide over the pad, or press <em>Back and forth</em>. Until the last answer, you cannot change the sides and the settings, and the pad does not show what plays.
+      </p>
+      {isBlind.value ? (
         <>
           <Play side="x" name="the unknown one" />
           <div class="row">
@@ -90,11 +127,11 @@ function Abx() {
           </div>
         </>
       ) : (
-        <button class="button strong" onClick={beginTest}>
+        <button class="button strong" onClick={() => beginTest().catch(fail)}>
           Begin ten trials
         </button>
       )}
-      <Result />
+      <Results />
     </div>
   );
 }
@@ -121,12 +158,12 @@ export function Compare() {
         <div>
           <h1 id="compare-title">Compare</h1>
           <p>
-            The key <kbd>C</kbd> changes between A and B, with a cross-fade of 20 ms.
+            {isTouch.value ? "Tap A or B to hear it." : <>Press <kbd>C</kbd> to switch between A and B.</>} The sound cross-fades in 20 ms.
           </p>
         </div>
         <div class="row">
           <label class="check">
-            <input type="checkbox" checked={isMatched.value} onChange={(event) => (isMatched.value = event.currentTarget.checked)} /> Match levels
+            <input type="checkbox" checked={isMatched.value} disabled={isBlind.value} onChange={(event) => (isMatched.value = event.currentTarget.checked)} /> Match levels
           </label>
           <button class="button" disabled={!heardSide.value} onClick={stop}>
             <Icon name="stop" /> Neither
@@ -149,7 +186,7 @@ export function Compare() {
         <Difference />
         <Abx />
       </div>
-      <AgainstRecording nameOf={nameOf} />
+      <AgainstRecording />
     </section>
   );
 }

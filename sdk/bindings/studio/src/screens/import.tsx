@@ -3,11 +3,14 @@
 import type { RecordedQuantity } from "htex";
 import type { ImportFormat } from "htex/import";
 
-import { actuators, chooseWaiting, counted, done, given, importChosen, importing, leaveOut, list, stop, toPad, waiting, type Done, type Given, type Waiting } from "../imports.ts";
+import { actuators, chooseWaiting, counted, done, given, importChosen, importing, leaveOut, stop, toPad, waiting, type Done, type Given, type Waiting } from "../imports.ts";
+import { isolated, list } from "../names.ts";
+import { Details } from "../parts/details.tsx";
 import { Name } from "../parts/name.tsx";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
+import { Spoken } from "../parts/spoken.tsx";
 import { fail, present, screen } from "../state.ts";
 
 /** What a full scale may be of. */
@@ -100,7 +103,12 @@ function Files({ all }: { all: readonly Waiting[] }) {
             <input type="checkbox" checked={one.isChosen} onChange={(event) => chooseWaiting(one, event.currentTarget.checked)} />
             <Name>{one.file.name}</Name>
           </label>
-          {one.problem && <p class="problem small">{one.problem}</p>}
+          {one.problem && (
+            <div class="problem small">
+              {one.problem.text}
+              {one.problem.details && <Details text={one.problem.details} />}
+            </div>
+          )}
         </li>
       ))}
     </ul>
@@ -132,8 +140,8 @@ function Asking({ all }: { all: readonly Waiting[] }) {
       {formats.map((format) => (
         <Kept key={format.name} format={format} />
       ))}
-      <p class="small" role="status">
-        {chosen.length === 0 ? "Choose the files to import." : `${isOnly ? "The file does" : "The files do"} not say ${list(words)}.`}
+      <p>
+        <Spoken text={chosen.length === 0 ? "Choose the files to import." : `${isOnly ? "The file does" : "The files do"} not say ${list(words)}.`} />
       </p>
       <Fields all={chosen} formats={formats} />
       <div class="row">
@@ -145,9 +153,7 @@ function Asking({ all }: { all: readonly Waiting[] }) {
         </button>
         {isBusy && (
           <>
-            <span class="small soft" role="status">
-              Importing <Name>{importing.value ?? ""}</Name>…
-            </span>
+            <Spoken text={`Importing ${isolated(importing.value ?? "")}…`} />
             <button type="button" class="button" onClick={stop}>Stop</button>
           </>
         )}

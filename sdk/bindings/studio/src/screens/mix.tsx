@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 
 import { isolated } from "../names.ts";
 import { Slider } from "../parts/slider.tsx";
-import { chosen, corners, endListening, listen, parts, place, takeMixture } from "../mixing.ts";
+import { chosen, corners, endListening, listen, onPad, parts, place, takeMixture } from "../mixing.ts";
 import { items } from "../shelf.ts";
 import { fail, present, say } from "../state.ts";
 
@@ -12,21 +12,24 @@ const NAMES = ["upper left", "upper right", "lower left", "lower right"];
 
 function Corner({ index }: { index: number }) {
   const choose = (id: string) => {
-    corners.value = chosen.peek().map((own, i) => (i === index ? id : own));
+    corners.value = corners.peek().map((own, i) => (i === index ? id : own));
     listen().catch(fail);
   };
+  const own = chosen.value[index];
+  // The texture on the pad has at most one corner.
+  const isOffered = own === "" || !chosen.value.includes("");
   return (
     <label class={`corner corner-${index}`}>
       <span class="hidden">Texture {NAMES[index]}</span>
-      <select value={chosen.value[index]} onChange={(event) => choose(event.currentTarget.value)}>
-        <option value="">{present.value ? isolated(present.value.name) : "the present texture"} (on the pad)</option>
-        {items.value.map(({ id, name }) => (
+      <select value={own} onChange={(event) => choose(event.currentTarget.value)}>
+        {isOffered && <option value="">{present.value ? isolated(present.value.name) : "the present texture"} (on the pad)</option>}
+        {items.value.filter(({ id }) => id !== onPad.value).map(({ id, name }) => (
           <option key={id} value={id}>
             {isolated(name)}
           </option>
         ))}
       </select>
-      <output>{Math.round(100 * (parts.value[index] ?? 0))} %</output>
+      <span class="corner-part">{Math.round(100 * (parts.value[index] ?? 0))} %</span>
     </label>
   );
 }
@@ -66,7 +69,7 @@ function Square() {
 
 async function take() {
   await takeMixture();
-  say("The mixture is on the pad. Undo brings back what was there.", "good");
+  say("The mixture is on the pad. Undo brings back the texture before it.", "good");
 }
 
 export function Mix() {
@@ -80,7 +83,7 @@ export function Mix() {
       <header class="screen-head">
         <div>
           <h1 id="mix-title">Mix</h1>
-          <p>Choose four textures, and drag the knob between them. All are mixed as bands; the file says what it was mixed of.</p>
+          <p>Choose four textures and drag the knob between them. The mixture uses the model Bands, and its file names the four textures.</p>
         </div>
         <button class="button strong" onClick={() => take().catch(fail)}>
           Take this mixture

@@ -3,22 +3,24 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Columns, Finding, Notice, RecordedQuantity } from "htex";
 
-import { author } from "../author.ts";
+import { author, nameOf } from "../author.ts";
 import { QUANTITIES, unitOf } from "../columns.ts";
 import { ColumnTable } from "../parts/column-table.tsx";
+import { Details } from "../parts/details.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { Name } from "../parts/name.tsx";
 import { Notices } from "../parts/notices.tsx";
 import { NumberField } from "../parts/number-field.tsx";
 import { RankedModels } from "../parts/ranked.tsx";
+import { Spoken } from "../parts/spoken.tsx";
 import { ToSettings } from "../parts/to-settings.tsx";
 import { Waveform } from "../parts/waveform.tsx";
 import { READ, take } from "../drop.ts";
 import { done, waiting } from "../imports.ts";
 import { abort, asksScale, canFit, fitAll, fitted, haltReading, isFitOld, isLevelKnown, isStopped, keepReading, license, progress, read, reading, reads, recordings, state, stated, stateMotion, stateQuantity, toPad, type Read, type Stated } from "../recordings.ts";
 import { fail } from "../state.ts";
+import { isTouch } from "../theme.ts";
 import { Imports } from "./import.tsx";
-import { nameOf } from "./shape.tsx";
 
 const SEVERITY = { error: "Error", warning: "Warning", info: "Note" };
 
@@ -71,9 +73,10 @@ function OneRead({ read: { recording, columns, processed, problem }, index }: { 
       {problem && (
         <div>
           <p class="problem">
-            <Icon name="warn" /> {problem}
+            <Icon name="warn" /> This recording cannot be read yet. Check what each column contains, what was recorded, and the rate.
           </p>
           <ToSettings names={["map", "quantity", "rate_hz"]} />
+          <Details text={problem} />
         </div>
       )}
       {processed && (
@@ -176,7 +179,7 @@ function FitPanel() {
         {now && (
           <>
             <progress max={now.of} value={now.done} aria-label="Progress of the fit" />
-            <span class="small soft" role="status">{now.text}</span>
+            <Spoken text={now.text} />
             <button class="button" onClick={abort}>Stop</button>
           </>
         )}
@@ -242,7 +245,7 @@ export function Record() {
       <header class="screen-head">
         <div>
           <h1 id="record-title">From a recording</h1>
-          <p>Choose CSV, WAV, FLAC or NPY files of one surface, or a file of another haptic format, or drop them. Nothing leaves this page.</p>
+          <p>Choose{isTouch.value ? "" : " or drop"} CSV, WAV, FLAC or NPY files of one surface, or a file of another haptic format. Nothing leaves this page.</p>
         </div>
         <input ref={input} type="file" hidden multiple accept={READ} onChange={() => take([...(input.current?.files ?? [])]).catch(fail)} />
         <button class="button strong" onClick={() => input.current?.click()}>
@@ -251,7 +254,7 @@ export function Record() {
       </header>
       <Imports />
       {recordings.value.length === 0 ? (
-        <p class="empty" hidden={waiting.value.length + done.value.length > 0}>No recording is open. A good one is ten seconds of a finger that slides to and fro, with the lateral force and, if they are known, the normal force and the position.</p>
+        <p class="empty" hidden={waiting.value.length + done.value.length > 0}>No recording is open. A good recording is ten seconds of a finger sliding back and forth. It contains the lateral force and, if possible, the normal force and the position.</p>
       ) : (
         <div class="stack">
           <Reading />

@@ -1,11 +1,12 @@
 // Shape: the spectrum drawn on, four macros, and the numbers.
 
-import { useMemo } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 
-import { author, models, theAuthor } from "../author.ts";
+import { author, nameOf, theAuthor } from "../author.ts";
+import { KeepsOne } from "../parts/keeps-one.tsx";
 import { Numbers } from "../parts/numbers.tsx";
 import { Slider } from "../parts/slider.tsx";
-import { Spectrum } from "../parts/spectrum.tsx";
+import { describe, Spectrum } from "../parts/spectrum.tsx";
 import type { Curve } from "../parts/spectrum-painter.ts";
 import { reference } from "../reference.ts";
 import { motion, played, shownMotion } from "../shadow.ts";
@@ -15,6 +16,7 @@ import { shaperOf } from "../shaping/shapers.ts";
 import { addHandle, drawHandles, endGesture, handles, macros, model, moveHandle, redraw, removeHandle, setMacro, shown, spec } from "../shaping/session.ts";
 import { pointDecibels, toDecibels } from "../shaping/spec.ts";
 import { choose, fail, present, texture } from "../state.ts";
+import { isTouch } from "../theme.ts";
 
 const HZ = Float64Array.from({ length: 240 }, (_, i) => 20 * 50 ** (i / 239));
 
@@ -25,15 +27,22 @@ const MACROS: { id: keyof Macros; name: string; low: string; high: string }[] = 
   { id: "level", name: "Level", low: "14 dB weaker", high: "14 dB stronger" },
 ];
 
-/** How each model is drawn on. */
-const HINTS: Record<string, string> = {
-  "org.htex.bands": "Drag the bars up and down; draw across them in one go.",
-  "org.htex.sslope": "Drag the peak, and the two slopes up and down.",
-  "org.htex.sbeta": "Drag the rise and the fall up and down.",
-  "org.htex.speak": "Drag the peaks. Double click adds one, Delete removes the chosen one.",
+/** How to draw on each model: with a mouse, and by touch if that differs. */
+const HINTS: Record<string, readonly [string, string?]> = {
+  "org.htex.bands": ["Drag the bars up and down, or draw across them in one stroke.", "Drag the tops of the bars up and down, or draw across them in one stroke."],
+  "org.htex.sslope": ["Drag the peak. Drag the two slopes up and down."],
+  "org.htex.sbeta": ["Drag the two handles, the rise and the fall, up and down."],
+  "org.htex.speak": ["Drag the peaks. Double-click to add one. Press Delete to remove the chosen one.", "Drag the peaks. Tap one to choose it. The buttons below add and remove peaks."],
 };
 
-export const nameOf = (id: string) => models.value.find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
+function Hint() {
+  const [byMouse, byTouch] = HINTS[model.value ?? ""] ?? ["You cannot draw on this model. Redraw it as bands, or use the sliders."];
+  return (
+    <p>
+      {isTouch.value ? byTouch ?? byMouse : byMouse} Press <em>Back and forth</em> to hear your changes as you draw.
+    </p>
+  );
+}
 
 /** The gesture that is going on; each begins with another number. */
 let gesture = 0;
@@ -83,7 +92,7 @@ function Legend({ curves }: { curves: readonly Curve[] }) {
       <li class="legend-model">{model.value ? nameOf(model.value) : "model"}</li>
       {has("recording") && <li class="legend-recording">recording</li>}
       {has("before") && <li class="legend-before">as it was opened</li>}
-      {has("threshold") && <li class="legend-threshold">a single sinusoid in here is not felt</li>}
+      {has("threshold") && <li class="legend-threshold">a single frequency in here is too weak to feel</li>}
     </ul>
   );
 }
@@ -97,7 +106,7 @@ function MacroSliders() {
           <Slider label={name} min={-1} max={1} step={0.02} digits={2} value={macros.value[id]} disabled={!author.value} onValue={(value) => setMacro(id, value)} onSettled={endGesture} />
         </div>
       ))}
-      <p class="small soft">They start from where the last other edit ended, for all models alike.</p>
+      <p class="small soft">These sliders work with every model. They start at 0 again after any other edit.</p>
     </div>
   );
 }
@@ -108,24 +117,30 @@ export function Shape() {
   const shaper = model.value ? shaperOf(model.value) : undefined;
   const isBands = model.value === BANDS;
   const point = spec.value?.points[shown.value];
+  const [wanted, select] = useState(0);
+  const selected = Math.min(wanted, Math.max(handles.value.length - 1, 0));
+  const handle = handles.value[selected];
   return (
     <section aria-labelledby="shape-title">
       <header class="screen-head">
         <div>
           <h1 id="shape-title">Shape</h1>
-          <p>{HINTS[model.value ?? ""] ?? "The numbers of this model cannot be drawn on."} Press To and fro, and it slides meanwhile.</p>
+          <Hint />
         </div>
         <Models />
       </header>
-      <div class="panel">
+      <div class="panel drawing">
+        <KeepsOne />
         <Legend curves={curves} />
         <Spectrum
           curves={curves}
           live={live}
           watch={() => [motion.value, texture.value]}
           handles={handles.value}
+          selected={selected}
+          onSelect={select}
           hasBars={isBands}
-          label={`Spectrum of ${present.value?.name ?? "the texture"}. Left and right choose a handle, up and down raise and lower it${shaper?.add ? ", with Shift left and right move it, Delete removes it" : ", with Shift left and right move it where it can be"}.`}
+          label={`Spectrum of ${present.value?.name ?? "the texture"}.${isTouch.value ? "" : ` Left and right choose a handle. Up and down, Page Up and Page Down raise and lower it. Shift with left and right moves it${shaper?.add ? ", and Delete removes it" : " if it can move"}.`}`}
           onMove={(handle, hz, db) => moveHandle(handle, hz, db, `drag ${gesture}`)}
           onDraw={(drawn) => drawHandles(drawn, `drag ${gesture}`)}
           onSettle={settle}
@@ -134,13 +149,19 @@ export function Shape() {
         />
         <div class="row between">
           <span class="small soft">
+            {handle && <span class="spectrum-told">{describe(handle)} · </span>}
             dB re 1 m{texture.value?.unit} · 20–1000 Hz
-            {point && point.speed !== null && ` · shown at ${point.speed.toFixed(0)} mm/s${point.force === null ? "" : `, ${point.force.toFixed(2)} N`}; ${spec.value?.points.length === 1 ? "the only condition" : `all ${spec.value?.points.length} conditions change alike`}`}
+            {point && point.speed !== null && ` · displayed at ${point.speed.toFixed(0)} mm/s${point.force === null ? "" : `, ${point.force.toFixed(2)} N`}; ${spec.value?.points.length === 1 ? "the only condition" : `all ${spec.value?.points.length} conditions change together`}`}
           </span>
           <span class="row">
             {shaper?.add && (
               <button class="button" onClick={() => addHandle(200, (handles.value[0]?.db ?? 0) - 3)}>
                 Add a peak
+              </button>
+            )}
+            {shaper?.remove && handle && (
+              <button class="button" disabled={handles.value.length < 2} onClick={() => removeHandle(selected)}>
+                Remove {handle.name.toLowerCase()}
               </button>
             )}
             {!isBands && (

@@ -11,11 +11,12 @@ import { Name } from "../parts/name.tsx";
 import { NoSparkline, Sparkline } from "../parts/sparkline.tsx";
 import { chosenTag, forget, found, items, search, tags, type Item } from "../shelf.ts";
 import { begin, fail, present, say, screen } from "../state.ts";
+import { isTouch } from "../theme.ts";
 
 async function choose(item: Item) {
   const name = isolated(item.name);
   await begin(item.bytes, `open ${name}`);
-  say(`${name} is on the pad. Slide over it, or go on to Shape.`);
+  say(`${name} is on the pad. Slide over it, or change it in Shape.`);
 }
 
 /** Arrow keys go through the cards. */
@@ -133,7 +134,11 @@ export function Shelf() {
       <header class="screen-head">
         <div>
           <h1 id="shelf-title">Shelf</h1>
-          <p>Pass over a texture to hear it, once something was pressed; press it to put it on the pad. Drop your own files anywhere.</p>
+          <p>
+            {isTouch.value
+              ? "Tap a texture to hear it and to load it onto the pad."
+              : "Hover over a texture to hear it. Click to load it onto the pad. Drop your own files anywhere on the page."}
+          </p>
         </div>
         <Files />
       </header>
@@ -145,7 +150,7 @@ export function Shelf() {
         <Tags />
       </div>
       <Cards />
-      {items.value.length > 0 && found.value.length === 0 && <p class="empty">No texture has these words. Try fewer.</p>}
+      {items.value.length > 0 && found.value.length === 0 && <p class="empty">No texture matches. Try fewer words.</p>}
     </section>
   );
 }

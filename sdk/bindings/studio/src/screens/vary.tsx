@@ -3,16 +3,18 @@
 import { useEffect } from "preact/hooks";
 
 import { endAudition, onLook } from "../audition.ts";
+import { KeepsOne } from "../parts/keeps-one.tsx";
 import { Name } from "../parts/name.tsx";
 import { Slider } from "../parts/slider.tsx";
 import { Sparkline } from "../parts/sparkline.tsx";
 import { fail, present, say } from "../state.ts";
+import { isTouch } from "../theme.ts";
 import { again, keepVarying, reach, takeVariation, variations, type Variation } from "../varying.ts";
 
 async function take(variation: Variation) {
   endAudition();
   await takeVariation(variation);
-  say(`Taken: ${variation.text}. Nine others are around it now.`);
+  say(`You took “${variation.text}”. Here are nine textures near it.`);
 }
 
 function Card({ variation, index }: { variation: Variation; index: number }) {
@@ -40,12 +42,13 @@ export function Vary() {
       <header class="screen-head">
         <div>
           <h1 id="vary-title">Vary</h1>
-          <p>Nine textures near {present.value ? <Name>{present.value.name}</Name> : "the one on the pad"}. Pass over one to try it, press to take it.</p>
+          <p>Nine textures near {present.value ? <Name>{present.value.name}</Name> : "the one on the pad"}. {isTouch.value ? "Tap one to take it." : "Hover over one to hear it. Click to take it."}</p>
         </div>
         <button class="button" onClick={() => again().catch(fail)}>
-          Nine others
+          Show nine others
         </button>
       </header>
+      <KeepsOne />
       <div class="panel narrow">
         <Slider label="How far" min={0.1} max={1} step={0.01} value={reach.value} onValue={(value) => (reach.value = value)} onSettled={() => again().catch(fail)} />
       </div>

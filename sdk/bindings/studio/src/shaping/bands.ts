@@ -3,7 +3,7 @@
 import type { Author } from "htex";
 
 import { macroGain, macroRatio, type Bench, type Drawn, type Handle, type Macros, type Shaper } from "./shaper.ts";
-import { clamp, fromDecibels, list, make, motionOf, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
+import { clamp, decibels, fromDecibels, list, make, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
 
 export const BANDS = "org.htex.bands";
 /** Most steps below the highest knot. */
@@ -99,11 +99,21 @@ function raised(bench: Bench, spec: Spec, gain: (knot: number, hz: number) => nu
   return { ...spec, points };
 }
 
+/**
+ * The curves of all points. Silent points are raised first, because their shapes count between
+ * conditions.
+ */
+function shapesOf(bench: Bench, spec: Spec, hz: readonly number[]) {
+  const strongest = Math.max(...spec.points.map(({ level }) => level));
+  if (spec.points.every(({ level }) => level > 0)) return spec.points.map((point) => pointDecibels(bench.from, spec.model, point, hz));
+  return decibels(bench.author, bench, { ...spec, points: spec.points.map((point) => ({ ...point, level: point.level || strongest })) }, hz);
+}
+
 /** Another model's curve as Bands. */
 export function redrawn(bench: Bench, spec: Spec): Spec {
   const frame = { below_highest: new Array<number>(REDRAWN.knots).fill(0), step_db: REDRAWN.step_db, layout: REDRAWN.layout };
   const hz = knots(bench.author, bench, frame);
-  const curves = spec.points.map((point) => pointDecibels(bench.from, spec.model, point, hz));
+  const curves = shapesOf(bench, spec, hz);
   const points = spec.points.map((point, i) => {
     const curve = curves[i] ?? [];
     const highest = Math.max(...curve);
@@ -133,7 +143,7 @@ export const bandsShaper: Shaper = {
     const point = spec.points[bench.shown];
     if (!point) return [];
     const hz = knots(bench.author, bench, point.parameters);
-    const db = pointDecibels(bench.from, spec.model, { ...point, ...motionOf(point) }, hz);
+    const db = pointDecibels(bench.from, spec.model, point, hz);
     return hz.map((f, i) => ({ name: `Band ${i + 1}`, hz: f, db: db[i] ?? 0, moves: "level" }));
   },
 

@@ -3,9 +3,10 @@
 import { computed, effect, signal } from "@preact/signals";
 import type { Texture } from "htex";
 
-import { author, theAuthor } from "../author.ts";
-import { pilotForce, pilotSpeed } from "../motion.ts";
-import { edit, fail, present, settle, texture } from "../state.ts";
+import { author, nameOf, theAuthor } from "../author.ts";
+import { near } from "../conditions.ts";
+import { sliders } from "../motion.ts";
+import { edit, fail, present, say, settle, texture } from "../state.ts";
 import { BANDS, redrawn } from "./bands.ts";
 import type { Bench, Drawn, Handle, Macros } from "./shaper.ts";
 import { shaperOf } from "./shapers.ts";
@@ -29,11 +30,8 @@ export const spec = computed<Spec | null>(() => {
 
 /** The point whose condition is nearest to what the sliders of the pad are set to; it stays while the finger moves. */
 export const shown = computed(() => {
-  const [speed, force] = [pilotSpeed.value, pilotForce.value];
-  const points = spec.value?.points ?? [];
-  const far = (a: number | null, b: number) => (a === null || a <= 0 ? 0 : Math.abs(Math.log(Math.max(b, 1e-3) / a)));
-  const distance = points.map((point) => far(point.speed, speed) + far(point.force, force));
-  return Math.max(distance.indexOf(Math.min(...distance)), 0);
+  const [now, name] = [texture.value, model.value];
+  return now && name ? near(now, name, sliders.value).place : 0;
 });
 
 function bench(from: Texture, of: Spec): Bench | null {
@@ -62,12 +60,16 @@ effect(() => {
   if (base && now !== base.made) forgetBase();
 });
 
+/** Takes an edited texture, which has only the edited model, as a step. */
+function step(edited: Texture, kept: string, change: string, gesture: string | null) {
+  const gone = texture.peek()?.models.filter((id) => id !== kept) ?? [];
+  edit({ texture: edited, bytes: edited.toBytes(), model: kept, change }, gesture);
+  if (gone.length > 0) say(`The edit kept only ${nameOf(kept)}, and removed ${gone.map(nameOf).join(", ")}. Undo brings them back.`);
+}
+
 function take(what: Spec, change: string, gesture: string | null) {
   const [now, made] = [texture.peek(), author.peek()];
-  if (!now || !made) return null;
-  const edited = make(made, { from: now }, what);
-  edit({ texture: edited, bytes: edited.toBytes(), model: what.model, change }, gesture);
-  return edited;
+  if (now && made) step(make(made, { from: now }, what), what.model, change, gesture);
 }
 
 function attempt(run: () => void) {
@@ -145,7 +147,7 @@ export function setMacro(name: keyof Macros, value: number) {
     const levelled = { ...shaped, points: shaped.points.map((point) => ({ ...point, level: point.level * factor })) };
     const edited = make(made, { from: now }, levelled);
     base.made = edited;
-    edit({ texture: edited, bytes: edited.toBytes(), model: levelled.model, change: `change ${name}` }, `macro ${name}`);
+    step(edited, levelled.model, `change ${name}`, `macro ${name}`);
     macros.value = next;
   });
 }

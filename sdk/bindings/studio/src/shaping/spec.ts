@@ -2,6 +2,8 @@
 
 import type { Author, MakeOptions, Metadata, Texture } from "htex";
 
+import { sliding } from "../conditions.ts";
+
 export type Parameters = Readonly<Record<string, number | readonly number[]>>;
 
 export interface Point {
@@ -18,27 +20,19 @@ export interface Spec {
   readonly points: readonly Point[];
 }
 
-interface StatedRepresentation {
-  model: string;
-  at: { condition: number }[];
-}
-
-/** The motion of a point, for questions to its texture; none if no condition is known. */
-export function motionOf({ speed, force }: Point) {
-  return speed === null && force === null ? undefined : { speed: speed ?? 0, force: force ?? 0 };
-}
-
 const known = (x: number | undefined) => (x === undefined || Number.isNaN(x) ? null : x);
 
 /** The parameters of a texture's model at all its conditions. */
 export function read(texture: Texture, model: string): Spec {
-  const stated = (texture.manifest["representations"] as StatedRepresentation[]).find((one) => one.model === model);
-  const conditions = (stated?.at ?? []).map(({ condition }) => texture.conditions[condition]);
-  const points = conditions.map((condition): Point => {
-    const place = { speed: known(condition?.speed), force: known(condition?.force) };
-    const at = motionOf({ ...place, level: 0, parameters: {} });
-    const question = at ? { model, at } : { model };
-    return { ...place, level: texture.level(question), parameters: texture.parameters(question) as Parameters };
+  const stated = texture.manifest.representations.find((one) => one.model === model);
+  const { conditions } = texture;
+  const points = (stated?.at ?? []).map(({ condition, level_rms }): Point => {
+    const own = conditions[condition];
+    const [speed, force] = [known(own?.speed), known(own?.force)];
+    const question = speed === null && force === null ? { model } : { model, at: { speed: speed ?? 0, force: force ?? 0 } };
+    // The level that the file states. A condition at rest plays nothing, but its level counts
+    // between conditions.
+    return { speed, force, level: level_rms, parameters: texture.parameters(question) as Parameters };
   });
   return { model, points };
 }
@@ -93,8 +87,7 @@ export function decibels(author: Author, frame: Frame, spec: Spec, frequencies: 
 }
 
 export function pointDecibels(texture: Texture, model: string, point: Point, frequencies: ArrayLike<number>): number[] {
-  const at = motionOf(point);
-  const magnitude = texture.spectrum(frequencies, at ? { model, at } : { model });
+  const magnitude = texture.spectrum(frequencies, { model, at: sliding(point) });
   return Array.from(magnitude, toDecibels);
 }
 

@@ -170,6 +170,16 @@ function seen(page, isSliding) {
   return page.screenshot({ mask, animations: "disabled" }).then(digest);
 }
 
+/** As `seen`, once the page stands still: a busy machine draws late. */
+async function settled(page, isSliding) {
+  for (let before = null; ; ) {
+    const now = await seen(page, isSliding);
+    if (now === before) return now;
+    before = now;
+    await page.waitForTimeout(300);
+  }
+}
+
 /** Part of the pad that is painted. */
 const painted = (page) =>
   page.locator(".pad canvas").evaluate((canvas) => {
@@ -206,7 +216,7 @@ for (const [way, options] of [["on a wide screen", {}], ["on a phone", { viewpor
       await page.mouse.move(3, 3);
       // Time for all that might follow X: a new grain, and sentences that come late.
       await page.waitForTimeout(900);
-      views.push({ isSliding, looks: await seen(page, isSliding), words: await spoken(page, session), part: await painted(page) });
+      views.push({ isSliding, looks: await settled(page, isSliding), words: await spoken(page, session), part: await painted(page) });
       await page.getByRole("button", { name: "X is A" }).click();
     }
     const x = rowsOf(await csvOf(page)).map((row) => row[1]);

@@ -61,8 +61,9 @@ const BINDINGS: [Binding; 5] = [
 ];
 
 /// Proofs that take too long for the tests of continuous integration.
-const PROOFS: [Binding; 2] = [
+const PROOFS: [Binding; 3] = [
     Binding { name: "processors", needs: &QEMU_USER, test: processors::all },
+    Binding { name: "studio", needs: &[NODE, NPM, CHROMIUM], test: studio::all },
     Binding { name: "costs", needs: &[CC, MONO, NODE, PYTHON], test: costs::test },
 ];
 

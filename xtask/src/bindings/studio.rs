@@ -7,8 +7,18 @@ use anyhow::Result;
 use super::{CHROMIUM, copy, exchanged, fixtures, which};
 use crate::places::{files, workspace};
 use crate::programs::{program, run};
+use crate::prove::WHOLE;
 
 pub(super) fn test(folder: &Path) -> Result<()> {
+    tests(folder, &[])
+}
+
+/// Tests it in every window. [`test`] takes a sample.
+pub(super) fn all(folder: &Path) -> Result<()> {
+    tests(folder, &[(WHOLE, "1")])
+}
+
+fn tests(folder: &Path, variables: &[(&str, &str)]) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let page = folder.join("page");
     crate::studio::studio(&page)?;
@@ -24,6 +34,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .args(["--test", "--test-concurrency=1"])
         .args(["page.test.mjs", "import.test.mjs", "opening.test.mjs", "history.test.mjs"])
         .args(["trust.test.mjs", "windows.test.mjs", "served.test.mjs", "firefox.test.mjs"])
+        .envs(variables.iter().copied())
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)
         .env("HTEX_CHROMIUM", which(chromium)))

@@ -91,6 +91,8 @@ pub enum Proof {
     ///
     /// Each command must print what its page says, and each page may take at most ten minutes.
     Ways(ways::Options),
+    /// Test the studio in every window, in light and in dark; tests take two windows
+    Studio,
     /// Print the time per sample in each language, relative to Rust
     Costs,
 }
@@ -120,7 +122,7 @@ const DAYS: [&str; 8] = [
 ];
 
 /// If this variable is set, tests that otherwise take a sample take everything.
-const WHOLE: &str = "HTEX_WHOLE";
+pub(crate) const WHOLE: &str = "HTEX_WHOLE";
 
 /// Whether tests take everything instead of a sample.
 pub fn whole() -> bool {
@@ -161,6 +163,7 @@ pub fn prove(proof: &Proof) -> Result<()> {
         Proof::BareRoot => released::bare_root(),
         Proof::Wine(options) => released::wine(options),
         Proof::Ways(options) => ways::prove(options),
+        Proof::Studio => bindings::prove("studio"),
         Proof::Costs => bindings::prove("costs"),
     }
 }

@@ -514,7 +514,7 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
     for (const screen of SCREENS) {
       await goTo(page, screen);
       await page.waitForTimeout(300);
-      if (screen === "Mix") await page.getByRole("main").getByRole("combobox").nth(1).selectOption({ label: name });
+      if (screen === "Mix") await page.getByRole("main").getByRole("combobox").nth(0).selectOption({ label: `${name} (on the pad)` });
       assert.deepEqual(await tooWide(page), [], screen);
     }
     // The whole name is legible on its card.

@@ -97,6 +97,9 @@ export async function shaping(page) {
   await page.waitForFunction(() => htexStudio.handles.value.length > 0);
 }
 
+/** Whether the tests take everything instead of a sample, as in `cargo xtask prove studio`. */
+export const isWhole = Boolean(process.env.HTEX_WHOLE);
+
 /** The bytes of the present texture. */
 export async function bytesOf(page) {
   // As a text, which takes a page milliseconds for megabytes. An array of numbers takes minutes.

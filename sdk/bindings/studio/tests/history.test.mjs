@@ -552,7 +552,7 @@ test("a name that changes the direction of text turns nothing around it", async 
       const from = last.data.trimEnd().length - 4;
       return [1, 2, 3].every((i) => left(from + i) > left(from + i - 1));
     });
-  assert.ok(await runsRight(page.locator(".notice .name")), "message");
+  assert.ok(await runsRight(page.locator(".notice-text")), "message");
   assert.ok(await runsRight(page.locator(".piece")), "top");
   await goTo(page, "Vary");
   assert.ok(await runsRight(page.locator(".screen-head p")), "sentence");

@@ -158,6 +158,8 @@ export class Library extends Handle {
   read(number, bytes) {
     if (number === this.selected) return;
     const { core } = this;
+    // After an error none is selected.
+    this.selected = undefined;
     core.scope((take) => core.call("htex_index_read_page", this.id, number, core.put(take, bytes), bytes.length));
     this.selected = number;
   }

@@ -43,11 +43,11 @@ async function take(page, name) {
 /** Presses on the spectrum and draws upwards. */
 async function pressAndDraw(page, across = 0.3) {
   const { x, y, width, height } = await page.locator(".spectrum canvas").boundingBox();
-  const before = await bytesOf(page);
+  const before = await page.evaluateHandle(() => htexStudio.present.value);
   await page.mouse.move(x + across * width, y + 0.5 * height);
   await page.mouse.down();
   for (let i = 1; i < 6; i++) await page.mouse.move(x + across * width, y + (0.5 - 0.05 * i) * height);
-  await page.waitForFunction((old) => old.join() !== htexStudio.present.value.bytes.join(), [...before]);
+  await page.waitForFunction((old) => htexStudio.present.value !== old, before);
 }
 
 /** Draws a bar: one step. */
@@ -62,9 +62,9 @@ async function draw(page, across) {
 
 /** Presses a button of the history, and waits for its message. */
 async function press(page, name) {
-  const before = await bytesOf(page);
+  const before = await page.evaluateHandle(() => htexStudio.present.value);
   await page.getByRole("button", { name, exact: true }).first().click();
-  await page.waitForFunction((old) => old.join() !== htexStudio.present.value.bytes.join(), [...before]);
+  await page.waitForFunction((old) => htexStudio.present.value !== old, before);
 }
 
 const pressUndo = (page) => press(page, "Undo");
@@ -318,8 +318,9 @@ test("the history is bounded in bytes", async () => {
   const all = files.map((text) => Buffer.from(text, "base64"));
   await goTo(page, "Shelf");
   for (const buffer of all) {
+    const before = await page.evaluateHandle(() => htexStudio.present.value);
     await page.locator("main input[type=file]").setInputFiles({ name: "large.htex", mimeType: "application/octet-stream", buffer });
-    await page.waitForFunction((length) => htexStudio.present.value.bytes.length === length, buffer.length);
+    await page.waitForFunction((old) => htexStudio.present.value !== old, before);
   }
   // Two megabytes take a moment to be written.
   await page.waitForTimeout(1000);

@@ -305,6 +305,11 @@ for (const window of PHONES) {
     await swipe(page, inside, [inside[0], Math.max(inside[1] - 120, 60)]);
     assert.ok((await scrolled()) > 20, `scrolled by ${await scrolled()} px`);
     assert.ok((await bytesOf(page)).equals(first), "a finger that scrolls changes nothing");
+    // A finger that is lifted while it moves lets the screen scroll on.
+    for (let rests = 0, last = -1; rests < 5; last = await scrolled()) {
+      await frames(page);
+      rests = (await scrolled()) === last ? rests + 1 : 0;
+    }
     await page.evaluate(() => document.querySelector("main").scrollTo(0, 0));
     const { x, y } = (await handlesAt(page)).reduce((best, one) => (one.db > best.db ? one : best));
     await swipe(page, [x, y], [x + 30, y + 50]);

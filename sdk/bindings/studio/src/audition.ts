@@ -1,7 +1,7 @@
 // Trying textures: one sounds while the pointer or the focus is on it.
 
 import { sound, tried, type Sounding } from "./engine.ts";
-import { pilot, setPilot } from "./motion.ts";
+import { finger, pilot, setPilot } from "./motion.ts";
 
 let lent = false;
 let ending = 0;
@@ -18,10 +18,21 @@ let look: object | null = null;
  */
 export function audition(sounding: Sounding) {
   tried.value = sounding;
-  if (sound.peek() === "on" && pilot.peek() === "hand") {
-    lent = true;
-    setPilot("to-and-fro");
-  }
+  lend();
+}
+
+/** Lets the autopilot slide if nothing else does and sound is on. */
+function lend() {
+  if (sound.peek() !== "on" || pilot.peek() !== "hand") return;
+  lent = true;
+  setPilot("to-and-fro");
+}
+
+/** Plays the present texture while the user changes it. If the finger rests, an autopilot slides it until a moment after the last call. */
+export function hearChange() {
+  tried.value = null;
+  if (finger.peek().force === 0) lend();
+  if (lent) endSoon();
 }
 
 /** Plays the present texture again. */
@@ -32,6 +43,11 @@ export function endAudition() {
   if (!lent) return;
   lent = false;
   setPilot("hand");
+}
+
+/** Lets the finger rest again if an autopilot slides it for a change. */
+export function endChange() {
+  if (lent) endAudition();
 }
 
 /** Ends a tapped texture after a moment. Pressing something else ends it earlier. */

@@ -7,6 +7,7 @@ import { near } from "./conditions.ts";
 import { tried } from "./engine.ts";
 import { LOUDNESS } from "./loudness.ts";
 import { sliders } from "./motion.ts";
+import { titleOf } from "./model-words.ts";
 import { isolated } from "./names.ts";
 import { opened, presentWork, recordedLoop } from "./reference.ts";
 import { items } from "./shelf.ts";
@@ -37,7 +38,7 @@ const RECORDING = "recording ";
 
 export const choices = computed(() => {
   const models = texture.value?.models ?? [];
-  const own = models.length > 1 ? models.map((id) => ({ id: `model ${id}`, name: `This texture by ${id.replace("org.htex.", "")}` })) : [];
+  const own = models.length > 1 ? models.map((id) => ({ id: `model ${id}`, name: `This texture: ${titleOf(id)}` })) : [];
   const recorded = presentWork.value?.names.map((name) => ({ id: RECORDING + name, name: `The recording ${isolated(name)}` })) ?? [];
   return [{ id: "present", name: `${present.value ? isolated(present.value.name) : "The present texture"}, now` }, { id: "opened", name: "As it was opened" }, ...recorded, ...own, ...items.value.map(({ id, name }) => ({ id, name: `Shelf: ${isolated(name)}` }))];
 });

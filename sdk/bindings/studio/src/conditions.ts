@@ -55,6 +55,16 @@ export function near(texture: Texture, model: string, wanted: Slid): { place: nu
   return { place, level: at[place]?.level_rms ?? 0, at: sliding(own[place] ?? unknown) };
 }
 
+/** The recorded range of a model: lowest and highest speed and force; null where nothing is known. */
+export function recordedRange({ manifest, conditions }: Texture, model: string) {
+  const at = manifest.representations.find((one) => one.model === model)?.at ?? [];
+  const range = (name: "speed" | "force", least: number): readonly [number, number] | null => {
+    const known = at.map(({ condition }) => conditions[condition]?.[name] ?? NaN).filter((x) => x >= least);
+    return known.length > 0 ? [Math.min(...known), Math.max(...known)] : null;
+  };
+  return { speed: range("speed", LEAST_MM_S), force: range("force", LEAST_N) };
+}
+
 /** A motion at which a condition plays. It slides a little at least: nothing plays at rest. */
 export function sliding({ speed, force }: Recorded): Slid {
   return { speed: Math.max(isKnown(speed) ? speed : USUAL_MM_S, LEAST_MM_S), force: Math.max(isKnown(force) ? force : USUAL_N, LEAST_N) };

@@ -18,7 +18,7 @@ export function fromLink(address: string): Uint8Array | null {
   try {
     text = atob(base64);
   } catch {
-    throw new Error("the link is not complete: what follows #t= is no texture; ask for it again");
+    throw new Error("The link is incomplete: the part after #t= is not a texture. Ask for the link again.");
   }
   return Uint8Array.from(text, (letter) => letter.charCodeAt(0));
 }

@@ -7,6 +7,8 @@ import "./styles/frame.css";
 import "./styles/controls.css";
 import "./styles/screens.css";
 import "./styles/shape.css";
+import "./styles/save.css";
+import "./styles/knobs.css";
 import "./styles/windows.css";
 import { App } from "./app.tsx";
 import { start } from "./start.ts";

@@ -1,10 +1,11 @@
 // A voice on the main thread that makes no sound: it tells what plays at the finger's motion, and whether that was recorded.
 
 import { batch, computed, effect, signal } from "@preact/signals";
-import type { Coverage as Told, Texture, Voice } from "htex";
+import type { Texture, Voice } from "htex";
 
 import { isBlind } from "./comparing.ts";
 import { near } from "./conditions.ts";
+import { coverageText } from "./coverage-text.ts";
 import { tried } from "./engine.ts";
 import { finger, isPiloted, pilotForce, pilotSpeed, sliders } from "./motion.ts";
 import { present, texture } from "./state.ts";
@@ -67,33 +68,12 @@ export interface Coverage {
   readonly text: string;
 }
 
-/** A change of the level or of the frequencies by less than this, in decibels or parts, is not worth a word. */
-const LEAST_DB = 0.5;
-const LEAST_PART = 0.02;
-
-/** How a motion lies to what was recorded, in a word. */
-function beyond({ kind, asked = 0, recorded = 0 }: Told["speed"], less: string, more: string) {
-  return kind === "outside" ? `${asked < recorded ? less : more} than recorded` : "";
-}
-
-function sentence({ kind, speed, force, frequencyFactor, levelFactor }: Told): string {
-  if (kind === "silent") return "The finger rests: nothing plays.";
-  if (kind !== "outside") return "As it was recorded or made.";
-  const ways = [beyond(speed, "slower", "faster"), beyond(force, "lighter", "harder")].filter(Boolean);
-  const db = 20 * Math.log10(Math.max(levelFactor, 1e-6));
-  const level = Math.abs(db) < LEAST_DB ? "" : `${Math.abs(db).toFixed(1)} dB ${db > 0 ? "stronger" : "weaker"}`;
-  const pitch = Math.abs(frequencyFactor - 1) < LEAST_PART ? "" : `its frequencies ${frequencyFactor.toFixed(2)} times as high`;
-  const how = [level, pitch].filter(Boolean).join(", ") || "as at the nearest recorded motion";
-  const text = `${ways.join(" and ") || "outside of what was recorded"}: it plays ${how}.`;
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
 /** Whether the motion is within the recorded conditions, and how it is played if not. */
 export const coverage = computed<Coverage>(() => {
   if (isBlind.value) return { inside: true, text: "Blind test: the page does not show what plays." };
   const { speed, force, position } = judgedMotion.value;
   const told = voice.value?.coverage({ speed, force, position });
-  return told ? { inside: told.kind !== "outside", text: sentence(told) } : { inside: true, text: "" };
+  return told ? { inside: told.kind !== "outside", text: coverageText(told) } : { inside: true, text: "" };
 });
 
 /** Magnitudes that play at the motion, in the texture's unit. */

@@ -7,7 +7,9 @@ import { listenForDrops } from "./drop.ts";
 import { author } from "./author.ts";
 import { audioContext, heard, playingNode, run, sound, tried, wake, warm } from "./engine.ts";
 import { fromLink } from "./link.ts";
-import { finger, rest } from "./motion.ts";
+import { done, finish } from "./first-steps.ts";
+import { slideGhost } from "./ghost.ts";
+import { finger, isPiloted, rest } from "./motion.ts";
 import { handles, moveHandle, setMacro } from "./shaping/session.ts";
 import { setPlayer } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
@@ -90,6 +92,14 @@ function stayAwake() {
   document.addEventListener("visibilitychange", () => sound.peek() === "on" && quietly());
 }
 
+/** Shows how to slide over the pad, until something is pressed. */
+function showFirst() {
+  effect(() => {
+    if (finger.value.force > 0 && !isPiloted()) finish("touch");
+  });
+  if (!done.peek().has("touch")) slideGhost(() => sound.peek() !== "off" || finger.peek().force > 0);
+}
+
 export function start() {
   run();
   const player = setPlayer();
@@ -110,6 +120,7 @@ export function start() {
     .then(async () => {
       if (!present.peek()) await openFirst();
       keepWork();
+      showFirst();
       document.documentElement.dataset["ready"] = "yes";
       performance.mark("ready");
     })

@@ -10,7 +10,7 @@ import { redrawn } from "./shaping/bands.ts";
 import { MACRO_DB, type Bench, type Macros, type Shaper } from "./shaping/shaper.ts";
 import { shaperOf } from "./shaping/shapers.ts";
 import { fromDecibels, make, read, type Spec } from "./shaping/spec.ts";
-import { edit, present, texture } from "./state.ts";
+import { edit, history, present, texture } from "./state.ts";
 
 export interface Variation {
   readonly texture: Texture;
@@ -33,8 +33,8 @@ const random = () => 2 * Math.random() - 1;
 
 function words(macros: Macros) {
   const strongest = (["rougher", "brighter", "peak", "level"] as const).map((name) => [name, macros[name]] as const).sort(([, a], [, b]) => Math.abs(b) - Math.abs(a));
-  const opposite = { rougher: "smoother", brighter: "duller", peak: "lower", level: "weaker" };
-  const plain = { rougher: "rougher", brighter: "brighter", peak: "higher", level: "stronger" };
+  const opposite = { rougher: "smoother", brighter: "duller", peak: "coarser", level: "fainter" };
+  const plain = { rougher: "rougher", brighter: "crisper", peak: "finer", level: "stronger" };
   const [first, second] = strongest;
   return [first, second].filter((one) => one !== undefined).map(([name, value]) => (value < 0 ? opposite[name] : plain[name])).join(", ");
 }
@@ -88,12 +88,15 @@ export async function again() {
   if (now && document) replace(nine(made, now, document.model));
 }
 
-/** Makes nine others whenever the present texture changes; returns what ends this. */
+/** Makes nine others when the present texture has changed and the gesture that changed it is over. Returns what ends this. */
 export function keepVarying() {
   theAuthor().catch(() => {});
+  let varied: Texture | null = null;
   const end = effect(() => {
     const [now, made, document] = [texture.value, author.value, present.peek()];
-    if (now && made && document) replace(nine(made, now, document.model));
+    if (history.value.gesture !== null || !now || !made || !document || now === varied) return;
+    varied = now;
+    replace(nine(made, now, document.model));
   });
   return () => {
     end();

@@ -12,16 +12,16 @@ import { fail } from "../state.ts";
 /** The sentence for what is felt. */
 export function words({ below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">, which = "it") {
   if (below_if_sensitive) return "Even a sensitive finger feels no difference.";
-  if (below_difference_threshold) return "A finger feels no difference; a sensitive one may.";
-  const whole = Math.abs(total_error_db) < 0.05 ? "" : ` All together ${which} is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;
-  return `A difference is felt: in the third octave where most is, ${largest_error_db.toFixed(1)} dB.${whole}`;
+  if (below_difference_threshold) return "A finger feels no difference. A sensitive finger may feel one.";
+  const whole = Math.abs(total_error_db) < 0.05 ? "" : ` Altogether, ${which} is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;
+  return `A difference is felt. In the third octave with the largest difference, it is ${largest_error_db.toFixed(1)} dB.${whole}`;
 }
 
 /** Why nothing can be said of what is felt: the full scale of a recording is not known. */
 function unknownLevel() {
   const { a, b } = both.value;
   const unknown = [a, b].find((side) => side && !isLevelKnown(side.texture));
-  return unknown ? `It is not known how strong ${unknown.texture.name} was as it was recorded. So nothing can be said of what is felt.` : null;
+  return unknown ? `It is not known how strong ${unknown.texture.name} was when it was recorded. So the page cannot say what a finger feels.` : null;
 }
 
 function difference() {
@@ -59,7 +59,7 @@ function ofRecording() {
   const [recorded, other] = a?.loop ? [a, b] : [b, a];
   if (!recorded?.loop || !other) return null;
   const felt = presentWork.value?.report.models.find(({ model }) => model === other.model && other.texture === recorded.texture && !other.loop)?.felt;
-  return felt ? `${words(felt)} All recordings against the model as it was fitted, at the condition where most is felt.` : "What is felt between a recording and this side was not measured: choose a model of this texture as the other side.";
+  return felt ? `${words(felt)} All recordings against the model as it was fitted, at the condition where most is felt.` : "The difference between a recording and this side was not measured. Choose a model of this texture as the other side.";
 }
 
 export function Difference() {
@@ -68,13 +68,13 @@ export function Difference() {
   const told = unknownLevel() ?? ofRecording();
   return (
     <div class="panel stack">
-      <h2>What is felt of the difference</h2>
+      <h2>The difference that a finger feels</h2>
       {found ? (
         <>
           <p>{words(found, "B")}</p>
           <Bars of={found} />
           <p class="soft small">
-            At {pilotSpeed.value.toFixed(0)} mm/s and {pilotForce.value.toFixed(2)} N; B against A, up is stronger, up to {MOST_DB} dB, by third octave in Hz. What is below the published detection thresholds of a resting finger does not count.
+            B against A at {pilotSpeed.value.toFixed(0)} mm/s and {pilotForce.value.toFixed(2)} N, in third octaves (Hz). A bar upwards means that B is stronger, by up to {MOST_DB} dB. Vibrations below the published detection thresholds of a resting finger do not count.
           </p>
         </>
       ) : (

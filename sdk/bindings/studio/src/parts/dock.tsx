@@ -1,15 +1,18 @@
 // The pad with its sliders: how fast, how hard, and who moves the finger.
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
 import { isBlind } from "../comparing.ts";
+import { recordedRange } from "../conditions.ts";
 import { audible, heard, isRunning, sound, volume, wake } from "../engine.ts";
 import { pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
-import { coverage, shownFinger } from "../shadow.ts";
+import { coverage, shownFinger, sounding } from "../shadow.ts";
 import { speak } from "../spoken.ts";
 import { isTouch } from "../theme.ts";
+import { Hint, hinted } from "./hint.tsx";
 import { Icon } from "./icons.tsx";
+import { Knobs } from "./knobs.tsx";
 import { Pad } from "./pad.tsx";
 import { Slider } from "./slider.tsx";
 
@@ -124,23 +127,30 @@ function Pilots() {
   );
 }
 
-/** The pad with its controls. The children are the message. */
+/** The recorded range of what plays; null during a blind test, which must not show it. */
+const recorded = computed(() => (sounding.value ? recordedRange(sounding.value.texture, sounding.value.model) : null));
+
+/** The pad with its knobs and controls. The children are the message. */
 export function Dock({ children }: { children: preact.ComponentChildren }) {
+  const range = recorded.value;
   return (
-    <aside class={hasControls.value ? "dock controlled" : "dock"} aria-label="Pad">
+    <aside class={`dock${hasControls.value ? " controlled" : ""}${hinted.value === "change" ? " hinted" : ""}`} aria-label="Pad">
       <Pad />
       <Readings />
       <div class="sentence">
         {children}
         <Coverage />
+        <Hint />
       </div>
+      <Knobs />
       <div class="dock-controls">
         <Pilots />
-        <Slider label="Speed" unit="mm/s" min={5} max={400} value={pilotSpeed.value} isLog digits={0} onValue={(value) => (pilotSpeed.value = value)} />
-        <Slider label="Force" unit="N" min={0.05} max={3} value={pilotForce.value} isLog digits={2} onValue={(value) => (pilotForce.value = value)} />
+        <Slider label="Speed" unit="mm/s" min={5} max={400} value={pilotSpeed.value} isLog digits={0} recorded={range?.speed} onValue={(value) => (pilotSpeed.value = value)} />
+        <Slider label="Force" unit="N" min={0.05} max={3} value={pilotForce.value} isLog digits={2} recorded={range?.force} onValue={(value) => (pilotForce.value = value)} />
         <Slider label="Volume" min={0} max={1} step={0.01} isNarrow value={volume.value} onValue={(value) => (volume.value = value)} />
         <p class="hint">
           {sound.value === "off" ? "Sound begins with your first press. " : ""}
+          {(range?.speed || range?.force) && "The marks show the recorded speeds and forces. "}
           {audible.value ? "Audible ×4: all frequencies are four times as high, which is not what a finger feels." : "Use headphones: small loudspeakers play no low frequencies."}
           {!isTouch.value && " Press Esc for silence."}
         </p>

@@ -3,6 +3,7 @@
 import type { ModelField } from "htex";
 
 import { models } from "../author.ts";
+import { texture } from "../state.ts";
 import { endGesture, model, setParameter, shown, spec } from "../shaping/session.ts";
 import { Slider } from "./slider.tsx";
 
@@ -61,7 +62,7 @@ export function Numbers() {
         })}
         {point && (
           <p class="small soft">
-            Level (RMS): {Number((point.level * 1e3).toPrecision(4))} thousandths of the unit. Numbers change only the displayed condition.
+            Level (RMS): {Number((point.level * 1e3).toPrecision(4))} m{texture.value?.unit}. Numbers change only the displayed condition.
           </p>
         )}
       </div>

@@ -1,10 +1,11 @@
 // Paints the pad: the grain, which moves with the finger, and the finger. It paints when something has changed, and not else.
 
-import { effect } from "@preact/signals";
+import { effect, type ReadonlySignal } from "@preact/signals";
+import type { Texture } from "htex";
 
 import { near } from "../conditions.ts";
+import { ghost } from "../ghost.ts";
 import { finger, sliders } from "../motion.ts";
-import { pictured, sounding } from "../shadow.ts";
 import { isCalm, scheme } from "../theme.ts";
 import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
 
@@ -14,6 +15,17 @@ const RELIEF_MS = 120;
 const PIECE_MS = 4;
 /** Part of the finger's way by which the grain moves. */
 const CARRIED = 0.3;
+
+/** Part of a finger's colour that a ghost has. */
+const GHOST = 0.45;
+
+/** What a pad shows. */
+export interface Look {
+  /** The texture that sounds; null for a bare pad. */
+  readonly sounding: ReadonlySignal<{ texture: Texture; model: string } | null>;
+  /** Index of the condition whose grain is shown. */
+  readonly pictured: ReadonlySignal<number | null>;
+}
 
 export class PadPainter {
   private tile: HTMLCanvasElement | null = null;
@@ -27,20 +39,23 @@ export class PadPainter {
   private before = { x: 0.5, y: 0.5 };
   private readonly ends: (() => void)[];
 
-  constructor(private readonly canvas: HTMLCanvasElement) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly look: Look,
+  ) {
     const observer = new ResizeObserver(() => this.fit());
     observer.observe(canvas);
     this.ends = [
       effect(() => {
-        void pictured.value;
+        void look.pictured.value;
         void scheme.value;
         // During a blind test there is no texture to show: the pad is bare at once.
-        if (!sounding.value) return this.wish();
+        if (!look.sounding.value) return this.wish();
         if (!this.drawing) this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
         else this.isStale = true;
       }),
       effect(() => {
-        void finger.value;
+        void [finger.value, ghost.value];
         this.wish();
       }),
       () => observer.disconnect(),
@@ -66,7 +81,7 @@ export class PadPainter {
 
   private renew() {
     this.timer = 0;
-    const now = sounding.peek();
+    const now = this.look.sounding.peek();
     if (!now) return;
     const { at } = near(now.texture, now.model, sliders.peek());
     const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model, at });
@@ -99,13 +114,17 @@ export class PadPainter {
     const pen = this.canvas.getContext("2d");
     if (!pen) return;
     const { width, height } = this.canvas;
-    const { x, y, force, speed } = finger.peek();
+    const isGhost = finger.peek().force === 0 && ghost.peek() !== null;
+    const { x, y, force, speed } = (isGhost && ghost.peek()) || finger.peek();
     this.carry(x, y, width, height, force > 0);
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
     const scale = Math.min(devicePixelRatio, 2);
-    if (this.tile && sounding.peek()) this.grain(pen, width, height, scale);
-    if (force > 0) this.touch(pen, x * width, y * height, scale, force, speed);
+    if (this.tile && this.look.sounding.peek()) this.grain(pen, width, height, scale);
+    if (force === 0) return;
+    pen.globalAlpha = isGhost ? GHOST : 1;
+    this.touch(pen, x * width, y * height, scale, force, speed);
+    pen.globalAlpha = 1;
   }
 
   /** Moves the grain with the finger; a finger that comes in on the other side has not moved back. */

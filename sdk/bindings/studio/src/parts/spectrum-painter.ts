@@ -1,6 +1,7 @@
 // Paints the spectrum: grid, threshold, curves, bars and handles.
 
-import { TICKS_HZ, placeOf, toX, toY, type Scale } from "./spectrum-scale.ts";
+import type { Limits } from "../shaping/shaper.ts";
+import { HIGH_HZ, LOW_HZ, TICKS_HZ, placeOf, toX, toY, type Scale } from "./spectrum-scale.ts";
 
 export type Style = "played" | "model" | "before" | "recording" | "threshold";
 
@@ -21,6 +22,7 @@ export interface Picture {
   readonly marks: readonly Mark[];
   /** Whether marks stand on bars. */
   readonly hasBars: boolean;
+  readonly limits: Limits;
   readonly selected: number;
   readonly hasFocus: boolean;
 }
@@ -49,8 +51,10 @@ export function paintSpectrum(pen: CanvasRenderingContext2D, ratio: number, pict
   if (threshold) below(pen, scale, threshold, colour("--sunk"));
   if (hasBars) bars(pen, picture, colour);
   for (const curve of curves) line(pen, scale, curve, colour);
+  range(pen, picture, colour);
   pen.restore();
-  marks.forEach((mark, i) => dot(pen, scale, mark, hasBars, i === picture.selected, picture.hasFocus, colour));
+  ends(pen, picture, colour);
+  marks.forEach((mark, i) => dot(pen, picture, mark, i, colour));
 }
 
 function grid(pen: CanvasRenderingContext2D, scale: Scale, colour: (name: string) => string, font: string) {
@@ -121,15 +125,40 @@ function bars(pen: CanvasRenderingContext2D, { scale, marks, selected }: Picture
   });
 }
 
-function dot(pen: CanvasRenderingContext2D, scale: Scale, mark: Mark, isBar: boolean, isSelected: boolean, hasFocus: boolean, colour: (name: string) => string) {
+/** Veils what is outside the range. */
+function range(pen: CanvasRenderingContext2D, { scale, limits }: Picture, colour: (name: string) => string) {
+  if (!limits.range) return;
+  const [low, high] = limits.range.map((hz) => toX(scale, hz)) as [number, number];
+  pen.fillStyle = colour("--sunk");
+  pen.globalAlpha = 0.72;
+  pen.fillRect(scale.left, scale.top, low - scale.left, scale.height);
+  pen.fillRect(high, scale.top, scale.left + scale.width - high, scale.height);
+  pen.globalAlpha = 1;
+}
+
+/** A bar along the axis from one end of the range to the other, which a drag moves. */
+function ends(pen: CanvasRenderingContext2D, { scale, limits }: Picture, colour: (name: string) => string) {
+  const [low, high] = (limits.range ?? [LOW_HZ, HIGH_HZ]).map((hz) => toX(scale, hz)) as [number, number];
+  const y = scale.top + scale.height + 1;
+  pen.lineWidth = limits.range ? 4 : 2;
+  pen.strokeStyle = colour(limits.range ? "--accent" : "--edge");
+  stroke(pen, low, y, high, y);
+  for (const x of [low, high]) stroke(pen, x, y - 2, x, y + 9);
+}
+
+function dot(pen: CanvasRenderingContext2D, { scale, hasBars: isBar, selected, hasFocus, limits }: Picture, mark: Mark, index: number, colour: (name: string) => string) {
   const [x, y] = placeOf(scale, mark);
+  const isSelected = index === selected;
   const radius = isBar ? (isSelected ? 6 : 3) : isSelected ? 9 : 7;
+  const isLocked = limits.locked.has(index);
   pen.beginPath();
-  pen.arc(x, y, radius, 0, 2 * Math.PI);
-  pen.fillStyle = colour(isSelected ? "--accent" : "--panel");
+  // A locked handle is a square.
+  if (isLocked) pen.rect(x - Math.max(radius, 5), y - Math.max(radius, 5), 2 * Math.max(radius, 5), 2 * Math.max(radius, 5));
+  else pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fillStyle = colour(isLocked ? "--soft" : isSelected ? "--accent" : "--panel");
   pen.fill();
   pen.lineWidth = 2;
-  pen.strokeStyle = colour("--accent");
+  pen.strokeStyle = colour(isLocked ? "--soft" : "--accent");
   pen.stroke();
   if (!isSelected || !hasFocus) return;
   pen.beginPath();

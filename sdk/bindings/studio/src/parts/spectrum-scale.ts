@@ -18,6 +18,9 @@ export const toY = (scale: Scale, db: number) => scale.top + (scale.height * (sc
 export const toHz = (scale: Scale, x: number) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** Math.min(Math.max((x - scale.left) / scale.width, 0), 1);
 export const toDb = (scale: Scale, y: number) => scale.ceiling - Math.min(Math.max((y - scale.top) / scale.height, 0), 1) * (scale.ceiling - scale.floor);
 
+/** Whether a place is below the curves, on the axis of frequencies. */
+export const isOnAxis = (scale: Scale, [, y]: readonly [number, number]) => y > scale.top + scale.height;
+
 /** Where a handle is painted. A handle beyond the axes is painted at their edge. */
 export const placeOf = (scale: Scale, { hz, db }: { readonly hz: number; readonly db: number }): [number, number] => [
   toX(scale, Math.min(Math.max(hz, LOW_HZ), HIGH_HZ)),

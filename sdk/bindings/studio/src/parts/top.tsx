@@ -6,6 +6,7 @@ import { depth, fail, origin, present, redo, redoable, screen, undo, undoable } 
 import { refusal } from "../store.ts";
 import { isTouch } from "../theme.ts";
 import { FeelOn } from "./feel-on.tsx";
+import { hinted } from "./hint.tsx";
 import { Icon } from "./icons.tsx";
 import { Name } from "./name.tsx";
 
@@ -57,7 +58,7 @@ export function Top() {
       <History />
       <Sound />
       <FeelOn />
-      <button class="toggle roomy" title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>
+      <button class={hinted.value === "keep" ? "toggle roomy hinted" : "toggle roomy"} title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>
         <Icon name="give" /> Save…
       </button>
     </header>

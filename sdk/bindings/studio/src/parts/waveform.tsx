@@ -59,5 +59,5 @@ export function Waveform({ processed }: { processed: Processed }) {
       plot.destroy();
     };
   }, [processed, colours]);
-  return <div ref={place} class="waveform" role="img" aria-label={`Signal of ${processed.duration_s.toFixed(1)} s; ${processed.read_s.length} stretches are read, which are shaded`} />;
+  return <div ref={place} class="waveform" role="img" aria-label={`Signal of ${processed.duration_s.toFixed(1)} s. The ${processed.read_s.length} stretches that are read are shaded.`} />;
 }

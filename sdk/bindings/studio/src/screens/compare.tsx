@@ -1,4 +1,4 @@
-// Compare: two textures on one key, blind trials, and what is felt of the difference.
+// Compare: two textures on one key, blind trials, and the difference that a finger feels.
 
 import { useEffect } from "preact/hooks";
 import type { RecordedLoop } from "htex";
@@ -36,7 +36,7 @@ function AsRecorded({ of }: { of: RecordedLoop | undefined }) {
   const at = [speed === null ? "" : `${speed.toFixed(0)} mm/s`, force === null ? "" : `${force.toFixed(2)} N`].filter(Boolean).join(" and ");
   return (
     <p class="soft small">
-      It plays as it was recorded{at && `, at ${at}`}, {(of.samples.length / of.rate_hz).toFixed(1)} s again and again, while the finger slides; it does not follow the finger. For a fair comparison slide steadily{at && ", as fast and with this force"}.
+      It plays as it was recorded{at && `, at ${at}`}, {(of.samples.length / of.rate_hz).toFixed(1)} s again and again, while the finger slides. It does not follow the finger. For a fair comparison, slide steadily{at && " at this speed and force"}.
     </p>
   );
 }

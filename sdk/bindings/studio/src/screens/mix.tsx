@@ -83,7 +83,7 @@ export function Mix() {
       <header class="screen-head">
         <div>
           <h1 id="mix-title">Mix</h1>
-          <p>Choose four textures and drag the knob between them. The mixture uses the model Bands, and its file names the four textures.</p>
+          <p>Choose four textures and drag the knob between them. The mixture is a free curve (Bands), and its file names the four textures.</p>
         </div>
         <button class="button strong" onClick={() => take().catch(fail)}>
           Take this mixture

@@ -2,7 +2,7 @@
 
 import type { Author } from "htex";
 
-import { macroGain, macroRatio, type Bench, type Drawn, type Handle, type Macros, type Shaper } from "./shaper.ts";
+import { isFree, isLimited, MACRO_DB, macroGain, macroRatio, NO_LIMITS, type Bench, type Drawn, type Handle, type Macros, type Shaper } from "./shaper.ts";
 import { clamp, decibels, fromDecibels, list, make, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
 
 export const BANDS = "org.htex.bands";
@@ -139,12 +139,15 @@ function drawn(bench: Bench, spec: Spec, handles: readonly Handle[], all: readon
 }
 
 export const bandsShaper: Shaper = {
+  isLocal: true,
+
   handles(bench, spec): Handle[] {
     const point = spec.points[bench.shown];
     if (!point) return [];
     const hz = knots(bench.author, bench, point.parameters);
     const db = pointDecibels(bench.from, spec.model, point, hz);
-    return hz.map((f, i) => ({ name: `Band ${i + 1}`, hz: f, db: db[i] ?? 0, moves: "level" }));
+    const stepDb = scalar(point.parameters, "step_db");
+    return hz.map((f, i) => ({ name: `Band ${i + 1}`, hz: f, db: db[i] ?? 0, moves: "level", stepDb }));
   },
 
   move(bench, spec, handle, _, db) {
@@ -161,6 +164,9 @@ export const bandsShaper: Shaper = {
     const hz = knots(bench.author, bench, point.parameters);
     const db = pointDecibels(bench.from, spec.model, point, hz);
     const ratio = macroRatio(macros);
-    return raised(bench, spec, (knot, f) => macroGain(macros, f) + between(hz, db, f / ratio) - (db[knot] ?? 0));
+    const { limits = NO_LIMITS } = bench;
+    const levelDb = isLimited(bench) ? MACRO_DB * macros.level : 0;
+    const gain = (knot: number, f: number) => macroGain(macros, f) + levelDb + between(hz, db, f / ratio) - (db[knot] ?? 0);
+    return raised(bench, spec, (knot, f) => (isFree(limits, knot, f) ? gain(knot, f) : 0));
   },
 };

@@ -1,49 +1,28 @@
 // The shaping that is going on: the specification of the present texture, and how edits become steps of its history.
 
-import { computed, effect, signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import type { Texture } from "htex";
 
-import { author, nameOf, theAuthor } from "../author.ts";
-import { near } from "../conditions.ts";
-import { sliders } from "../motion.ts";
-import { edit, fail, present, say, settle, texture } from "../state.ts";
+import { author, theAuthor } from "../author.ts";
+import { finish } from "../first-steps.ts";
+import { titleOf } from "../model-words.ts";
+import { edit, fail, say, settle, texture } from "../state.ts";
 import { BANDS, redrawn } from "./bands.ts";
-import type { Bench, Drawn, Handle, Macros } from "./shaper.ts";
+import { limits, limitsSet, lock } from "./limits.ts";
+import { isFree, isInRange, MACRO_DB, NO_LIMITS, type Bench, type Drawn, type Macros, type Shaper } from "./shaper.ts";
 import { shaperOf } from "./shapers.ts";
-import { fromDecibels, make, read, type Spec } from "./spec.ts";
-import { MACRO_DB } from "./shaper.ts";
+import { clamp, fromDecibels, make, type Spec } from "./spec.ts";
+import { handles, model, shown, spec } from "./subject.ts";
+
+export { handles, model, shown, spec };
 
 export const NO_MACROS: Macros = { rougher: 0, brighter: 0, peak: 0, level: 0 };
 export const macros = signal<Macros>(NO_MACROS);
 
-/** The model that is shaped. */
-export const model = computed(() => {
-  const [now, document] = [texture.value, present.value];
-  if (!now || !document) return null;
-  return now.models.includes(document.model) ? document.model : now.models[0] ?? null;
-});
-
-export const spec = computed<Spec | null>(() => {
-  const [now, name] = [texture.value, model.value];
-  return now && name ? read(now, name) : null;
-});
-
-/** The point whose condition is nearest to what the sliders of the pad are set to; it stays while the finger moves. */
-export const shown = computed(() => {
-  const [now, name] = [texture.value, model.value];
-  return now && name ? near(now, name, sliders.value).place : 0;
-});
-
 function bench(from: Texture, of: Spec): Bench | null {
   const made = author.peek();
-  return made ? { author: made, from, of, shown: shown.peek() } : null;
+  return made ? { author: made, from, of, shown: shown.peek(), limits: limits.peek() } : null;
 }
-
-export const handles = computed<Handle[]>(() => {
-  const [now, what, made] = [texture.value, spec.value, author.value];
-  if (!now || !what || !made) return [];
-  return shaperOf(what.model)?.handles({ author: made, from: now, of: what, shown: shown.value }, what) ?? [];
-});
 
 /** What the macros start from: a texture of one's own, since the present one is freed with each step. */
 let base: { texture: Texture; spec: Spec; made: Texture | null } | null = null;
@@ -54,17 +33,24 @@ function forgetBase() {
   if (macros.peek() !== NO_MACROS) macros.value = NO_MACROS;
 }
 
-/** Whatever else becomes of the texture, the macros begin anew. */
+/** If anything else changes the texture, the macros begin anew. */
 effect(() => {
   const now = texture.value;
   if (base && now !== base.made) forgetBase();
+});
+
+/** With other limits, the macros begin anew, and what they changed before stays. */
+effect(() => {
+  void limitsSet.value;
+  forgetBase();
 });
 
 /** Takes an edited texture, which has only the edited model, as a step. */
 function step(edited: Texture, kept: string, change: string, gesture: string | null) {
   const gone = texture.peek()?.models.filter((id) => id !== kept) ?? [];
   edit({ texture: edited, bytes: edited.toBytes(), model: kept, change }, gesture);
-  if (gone.length > 0) say(`The edit kept only ${nameOf(kept)}, and removed ${gone.map(nameOf).join(", ")}. Undo brings them back.`);
+  finish("change");
+  if (gone.length > 0) say(`The edit kept only one model: ${titleOf(kept)}. Undo brings back the others.`);
 }
 
 function take(what: Spec, change: string, gesture: string | null) {
@@ -80,23 +66,42 @@ function attempt(run: () => void) {
   }
 }
 
+/** Whether an edit on the curve may change a handle. If a lock or the range forbids it, says why. */
+function mayMove(handle: number): boolean {
+  const [one, what] = [handles.peek()[handle], spec.peek()];
+  const { locked, range } = limits.peek();
+  if (!one || !what) return false;
+  if (locked.has(handle)) say(`${one.name} is locked. Unlock it to move it.`);
+  else if (range && !shaperOf(what.model)?.isLocal) say(`${titleOf(what.model)} cannot change only a range. Redraw it as a free curve, or change all frequencies.`);
+  else if (!isInRange(limits.peek(), one.hz)) say(`${one.name} is outside the range that may change.`);
+  else return true;
+  return false;
+}
+
 /** Moves a handle; calls of one gesture are one step. */
 export function moveHandle(handle: number, hz: number, db: number, gesture: string) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
     const place = now && what && bench(now, what);
     const shaper = what && shaperOf(what.model);
-    const name = handles.peek()[handle]?.name.toLowerCase();
-    if (place && what && shaper) take(shaper.move(place, what, handle, hz, db), `move ${name ?? "a handle"}`, gesture);
+    if (!place || !what || !shaper || !mayMove(handle)) return;
+    const { range } = limits.peek();
+    const moved = shaper.move(place, what, handle, range ? clamp(hz, ...range) : hz, db);
+    const name = handles.peek()[handle]?.name ?? "a handle";
+    if (moved === what) say(`${name} cannot move while another handle is locked.`);
+    else take(moved, `move ${name.toLowerCase()}`, gesture);
   });
 }
 
-/** Draws across bars; calls of one gesture are one step. */
+/** Draws across bars; calls of one gesture are one step. Locked bars, and bars outside the range, stay. */
 export function drawHandles(all: readonly Drawn[], gesture: string) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
     const place = now && what && bench(now, what);
-    const shaped = place && what && shaperOf(what.model)?.draw?.(place, what, all);
+    const free = all.filter(({ handle }) => isFree(limits.peek(), handle, handles.peek()[handle]?.hz ?? 0));
+    const [first] = all;
+    if (all.length === 1 && free.length === 0 && first) return void mayMove(first.handle);
+    const shaped = place && what && free.length > 0 && shaperOf(what.model)?.draw?.(place, what, free);
     if (shaped) take(shaped, "draw bars", gesture);
   });
 }
@@ -105,8 +110,11 @@ export function addHandle(hz: number, db: number) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
     const place = now && what && bench(now, what);
-    const added = place && what && shaperOf(what.model)?.add?.(place, what, hz, db);
-    if (added) take(added, "add a peak", null);
+    const { locked, range } = limits.peek();
+    const added = place && what && shaperOf(what.model)?.add?.(place, what, range ? clamp(hz, ...range) : hz, db);
+    if (!added || added === what) return;
+    take(added, "add a peak", null);
+    lock(locked);
   });
 }
 
@@ -114,19 +122,40 @@ export function removeHandle(handle: number) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
     const place = now && what && bench(now, what);
+    const { locked } = limits.peek();
+    if (!mayMove(handle)) return;
     const left = place && what && shaperOf(what.model)?.remove?.(place, what, handle);
-    if (left && left !== what) take(left, "remove a peak", null);
+    if (!left || left === what) return;
+    take(left, "remove a peak", null);
+    // The handles after it have another index now.
+    lock([...locked].map((one) => (one > handle ? one - 1 : one)));
   });
 }
 
-/** Draws the curve of another model as Bands, which can be shaped. */
+/** Draws the curve of another model as Bands, whose curve is free. */
 export async function redraw() {
   await theAuthor();
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
     const place = now && what && bench(now, what);
-    if (place && what && what.model !== BANDS) take(redrawn(place, what), "redraw as bands", null);
+    if (place && what && what.model !== BANDS) take(redrawn(place, what), "redraw as a free curve", null);
   });
+}
+
+/** Whether a macro can change a model's curve as it is. Otherwise the curve is redrawn as Bands first. */
+function suits(shaper: Shaper | undefined, name: keyof Macros) {
+  const { range } = limits.peek();
+  return shaper ? shaper.isLocal || !range : name === "level" && !range;
+}
+
+/** Whether a macro can change something, or locked handles prevent it. */
+export function canTurn(name: keyof Macros): boolean {
+  const { locked, range } = limits.value;
+  if (locked.size === 0) return true;
+  const shaper = shaperOf(model.value ?? "");
+  if (range && !shaper?.isLocal) return true;
+  if (shaper?.turns) return shaper.turns(name, locked);
+  return handles.value.some(({ hz }, i) => isFree(limits.value, i, hz));
 }
 
 /** Sets a macro; all that change within one gesture is one step. */
@@ -134,16 +163,21 @@ export function setMacro(name: keyof Macros, value: number) {
   attempt(() => {
     const [now, what, made] = [texture.peek(), spec.peek(), author.peek()];
     if (!now || !what || !made) return;
-    if (!base) {
-      const place = { author: made, from: now, of: what, shown: shown.peek() };
-      // What cannot be drawn is redrawn first; its level alone can be changed as it is.
-      const start = shaperOf(what.model) || name === "level" ? what : redrawn(place, what);
-      base = { texture: make(made, { from: now }, start), spec: start, made: null };
+    base ??= { texture: make(made, { from: now }, what), spec: what, made: null };
+    if (!suits(shaperOf(base.spec.model), name)) {
+      const before = base.texture;
+      const start = redrawn({ author: made, from: before, of: base.spec, shown: shown.peek() }, base.spec);
+      base = { ...base, texture: make(made, { from: before }, start), spec: start };
+      before.free();
     }
     const next = { ...macros.peek(), [name]: value };
-    const place = { author: made, from: base.texture, of: base.spec, shown: shown.peek() };
+    // Locks are of the handles of the model that was redrawn.
+    const set = limits.peek();
+    const only = base.spec.model === what.model || set === NO_LIMITS ? set : { ...set, locked: NO_LIMITS.locked };
+    const place = { author: made, from: base.texture, of: base.spec, shown: shown.peek(), limits: only };
     const shaped = shaperOf(base.spec.model)?.macros(place, base.spec, next) ?? base.spec;
-    const factor = fromDecibels(MACRO_DB * next.level);
+    // With limits, the shaper has changed the level of what may change.
+    const factor = only === NO_LIMITS ? fromDecibels(MACRO_DB * next.level) : 1;
     const levelled = { ...shaped, points: shaped.points.map((point) => ({ ...point, level: point.level * factor })) };
     const edited = make(made, { from: now }, levelled);
     base.made = edited;

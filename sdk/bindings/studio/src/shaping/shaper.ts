@@ -11,6 +11,8 @@ export interface Handle {
   readonly db: number;
   /** What dragging changes. */
   readonly moves: "level" | "both";
+  /** Smallest change of the decibels, if the model has steps. */
+  readonly stepDb?: number;
 }
 
 /** A handle and its new decibels. */
@@ -19,10 +21,28 @@ export interface Drawn {
   readonly db: number;
 }
 
+/** Lowest and highest frequency, Hz. */
+export type Range = readonly [low: number, high: number];
+
+/** What an edit may not change: locked handles, and frequencies outside a range. */
+export interface Limits {
+  readonly locked: ReadonlySet<number>;
+  readonly range: Range | null;
+}
+
+export const NO_LIMITS: Limits = { locked: new Set(), range: null };
+
+export const isInRange = ({ range }: Limits, hz: number) => !range || (hz >= range[0] && hz <= range[1]);
+
+/** Whether an edit may change a handle. */
+export const isFree = (limits: Limits, handle: number, hz: number) => !limits.locked.has(handle) && isInRange(limits, hz);
+
 /** Where an edit takes place: the module that makes, the texture that is changed, and the point that is shown. */
 export interface Bench extends Frame {
   readonly author: Author;
   readonly shown: number;
+  /** Without limits, an edit may change everything. */
+  readonly limits?: Limits;
 }
 
 /** Strengths of the macros, -1 to 1. */
@@ -34,6 +54,8 @@ export interface Macros {
 }
 
 export interface Shaper {
+  /** Whether a part of the curve can change alone. */
+  readonly isLocal: boolean;
   handles(bench: Bench, spec: Spec): Handle[];
   /** Moves a handle to a frequency and to decibels at the shown point; other points change alike. */
   move(bench: Bench, spec: Spec, handle: number, hz: number, db: number): Spec;
@@ -42,7 +64,9 @@ export interface Shaper {
   /** Adds a handle; absent where their number is fixed. */
   add?(bench: Bench, spec: Spec, hz: number, db: number): Spec;
   remove?(bench: Bench, spec: Spec, handle: number): Spec;
-  /** All but the level, which is the same for all models. */
+  /** Whether a macro changes something while handles are locked; absent if every handle moves alone. */
+  turns?(macro: keyof Macros, locked: ReadonlySet<number>): boolean;
+  /** The macros. Without limits, *level* is not applied, because it is the same for all models. */
   macros(bench: Bench, spec: Spec, macros: Macros): Spec;
 }
 
@@ -53,7 +77,9 @@ export const MACRO_OCTAVES = 1;
 const ROUGH_HZ = 90;
 const BRIGHT_HZ = 320;
 
-/** The change of a frequency's decibels by the macros. */
+export const isLimited = ({ limits }: Bench): boolean => limits !== undefined && limits !== NO_LIMITS;
+
+/** The change of a frequency's decibels by *rougher* and *brighter*. */
 export function macroGain({ rougher, brighter }: Macros, hz: number) {
   const low = 1 / (1 + (hz / ROUGH_HZ) ** 2);
   const high = hz ** 2 / (hz ** 2 + BRIGHT_HZ ** 2);

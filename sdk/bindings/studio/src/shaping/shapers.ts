@@ -1,7 +1,7 @@
 // The shapers of sSlope, sBeta and sPeak. Frequencies and decibels are those that the model itself answers with.
 
 import { bandsShaper, BANDS } from "./bands.ts";
-import { macroGain, macroRatio, solve, type Bench, type Handle, type Shaper } from "./shaper.ts";
+import { isFree, isLimited, MACRO_DB, macroGain, macroRatio, NO_LIMITS, solve, type Bench, type Handle, type Macros, type Shaper } from "./shaper.ts";
 import { anchored, change, clamp, decibels, fromDecibels, list, scalar, type Spec } from "./spec.ts";
 
 /** How far the grips of sSlope are from its peak, as a ratio. */
@@ -28,7 +28,31 @@ function byDifference(bench: Bench, spec: Spec, name: string, [low, high]: reado
   return anchored(bench.author, bench, scaled(solve(difference, wanted, low, high)), from, before);
 }
 
+/** The parameter of each grip of sSlope. */
+const SLOPES = [[1, "order_high_pass"], [2, "order_low_pass"]] as const;
+
+const lockedIn = ({ limits = NO_LIMITS }: Bench) => limits.locked;
+
+/**
+ * Gives the locked slopes of a changed curve the steepness that they had, because each slope also
+ * changes the other one a little. Then the first locked handle has its decibels again.
+ */
+function withLockedSlopes(bench: Bench, all: readonly Handle[], before: Spec, changed: Spec): Spec {
+  const locked = lockedIn(bench);
+  const [peak] = all;
+  const held = all.find((_, i) => locked.has(i));
+  if (!peak || !held) return changed;
+  let after = changed;
+  for (const [i, name] of SLOPES) {
+    const grip = all[i];
+    if (grip && locked.has(i)) after = byDifference(bench, after, name, ORDERS, grip.hz, peak.hz, grip.db - peak.db);
+  }
+  return anchored(bench.author, bench, after, held.hz, decibels(bench.author, bench, before, [held.hz]).map(([now]) => now ?? 0));
+}
+
 const slopeShaper: Shaper = {
+  isLocal: false,
+
   handles(bench, spec): Handle[] {
     const peak = scalar(spec.points[bench.shown]?.parameters ?? {}, "peak_hz");
     const places = [peak, Math.max(peak / ARM, 21), Math.min(peak * ARM, 990)];
@@ -38,28 +62,47 @@ const slopeShaper: Shaper = {
   },
 
   move(bench, spec, handle, hz, db) {
-    const [peak, low, high] = this.handles(bench, spec);
+    const all = this.handles(bench, spec);
+    const [peak, low, high] = all;
     if (!peak || !low || !high) return spec;
     if (handle > 0) {
       const grip = handle === 1 ? low : high;
-      return byDifference(bench, spec, handle === 1 ? "order_high_pass" : "order_low_pass", ORDERS, grip.hz, peak.hz, Math.min(db - peak.db, -0.5));
+      const moved = byDifference(bench, spec, handle === 1 ? "order_high_pass" : "order_low_pass", ORDERS, grip.hz, peak.hz, Math.min(db - peak.db, -0.5));
+      return withLockedSlopes(bench, all, spec, moved);
     }
+    // The slopes are beside the peak and move with it.
+    if (lockedIn(bench).size > 0) return spec;
     const place = clamp(hz, ...PEAK_HZ);
     const before = decibels(bench.author, bench, spec, [peak.hz]).map(([now]) => (now ?? 0) + db - peak.db);
     const moved = change(spec, (parameters) => ({ peak_hz: clamp((scalar(parameters, "peak_hz") * place) / peak.hz, ...PEAK_HZ) }));
     return anchored(bench.author, bench, moved, place, before);
   },
 
-  macros(_, spec, macros) {
-    return change(spec, (parameters) => ({
+  turns(macro, locked) {
+    if (macro === "peak" || macro === "level") return locked.size === 0;
+    return !locked.has(macro === "rougher" ? 1 : 2);
+  },
+
+  macros(bench, spec, wanted) {
+    const macros = possible(this, bench, wanted);
+    const changed = change(spec, (parameters) => ({
       peak_hz: clamp(scalar(parameters, "peak_hz") * macroRatio(macros), ...PEAK_HZ),
       order_high_pass: clamp(scalar(parameters, "order_high_pass") * 2 ** -macros.rougher, ...ORDERS),
       order_low_pass: clamp(scalar(parameters, "order_low_pass") * 2 ** -macros.brighter, ...ORDERS),
     }));
+    return withLockedSlopes(bench, this.handles(bench, spec), spec, changed);
   },
 };
 
+/** The macros that may change something; the others are 0. */
+function possible(shaper: Shaper, bench: Bench, macros: Macros): Macros {
+  const value = (macro: keyof Macros) => (shaper.turns?.(macro, lockedIn(bench)) === false ? 0 : macros[macro]);
+  return { rougher: value("rougher"), brighter: value("brighter"), peak: value("peak"), level: value("level") };
+}
+
 const betaShaper: Shaper = {
+  isLocal: false,
+
   handles(bench, spec): Handle[] {
     const db = at(bench, spec, GRIPS_HZ);
     return GRIPS_HZ.map((hz, i) => ({ name: i === 0 ? "Rise" : "Fall", hz, db: db[i] ?? 0, moves: "level" }));
@@ -72,11 +115,21 @@ const betaShaper: Shaper = {
     return byDifference(bench, spec, handle === 0 ? "alpha" : "beta", SHAPES, grip.hz, other.hz, db - other.db);
   },
 
-  macros(_, spec, macros) {
-    return change(spec, (parameters) => ({
+  turns(macro, locked) {
+    if (macro === "peak" || macro === "level") return locked.size === 0;
+    return !locked.has(macro === "rougher" ? 0 : 1);
+  },
+
+  macros(bench, spec, wanted) {
+    const macros = possible(this, bench, wanted);
+    const changed = change(spec, (parameters) => ({
       alpha: clamp(scalar(parameters, "alpha") * 2 ** (macros.peak - macros.rougher), ...SHAPES),
       beta: clamp(scalar(parameters, "beta") * 2 ** (-macros.peak - macros.brighter), ...SHAPES),
     }));
+    const [locked] = lockedIn(bench);
+    const grip = locked === undefined ? undefined : GRIPS_HZ[locked];
+    if (grip === undefined) return changed;
+    return anchored(bench.author, bench, changed, grip, decibels(bench.author, bench, spec, [grip]).map(([now]) => now ?? 0));
   },
 };
 
@@ -91,20 +144,19 @@ const AMPLITUDES = [1e-6, 4] as const;
 function withLines(bench: Bench, spec: Spec, changed: number, of: (hz: readonly number[], amplitude: readonly number[]) => [number[], number[]], gainDb: number): Spec {
   const hz = list(spec.points[bench.shown]?.parameters ?? {}, "frequency_hz");
   const db = at(bench, spec, hz);
-  const others = hz.map((_, i) => i).filter((i) => i !== changed);
-  const anchor = others.reduce((best, i) => ((db[i] ?? -999) > (db[best] ?? -999) ? i : best), others[0] ?? -1);
+  const anchor = strongest(db, (i) => i !== changed);
   const after = change(spec, (parameters) => {
     const [frequencies, amplitudes] = of(list(parameters, "frequency_hz"), list(parameters, "amplitude"));
     return { frequency_hz: frequencies, amplitude: amplitudes.map((a) => clamp(a, ...AMPLITUDES)) };
   });
-  if (anchor < 0) {
-    return { ...after, points: after.points.map((point) => ({ ...point, level: point.level * fromDecibels(gainDb) })) };
-  }
+  if (anchor < 0) return scaled(after, gainDb);
   const place = hz[anchor] ?? 100;
   return anchored(bench.author, bench, after, place, decibels(bench.author, bench, spec, [place]).map(([now]) => now ?? 0));
 }
 
 const peakShaper: Shaper = {
+  isLocal: true,
+
   handles(bench, spec): Handle[] {
     const hz = list(spec.points[bench.shown]?.parameters ?? {}, "frequency_hz");
     const db = at(bench, spec, hz);
@@ -136,17 +188,33 @@ const peakShaper: Shaper = {
     return withLines(bench, spec, handle, (f, a) => [without(f), without(a)], 0);
   },
 
-  macros(_, spec, macros) {
-    const ratio = macroRatio(macros);
-    return change(spec, (parameters) => {
+  macros(bench, spec, macros) {
+    const { limits = NO_LIMITS } = bench;
+    const [ratio, among] = [macroRatio(macros), limits.range ?? PEAK_HZ];
+    const lines = list(spec.points[bench.shown]?.parameters ?? {}, "frequency_hz");
+    const free = lines.map((hz, i) => isFree(limits, i, hz));
+    const fixed = strongest(at(bench, spec, lines), (i) => !free[i]);
+    // Only ratios of amplitudes count: if all lines may change, the level itself is changed below.
+    const levelDb = fixed < 0 ? 0 : MACRO_DB * macros.level;
+    const changed = change(spec, (parameters) => {
       const hz = list(parameters, "frequency_hz");
       return {
-        frequency_hz: hz.map((f) => clamp(f * ratio, ...PEAK_HZ)),
-        amplitude: list(parameters, "amplitude").map((a, i) => clamp(a * fromDecibels(macroGain(macros, hz[i] ?? 100)), ...AMPLITUDES)),
+        frequency_hz: hz.map((f, i) => (free[i] ? clamp(f * ratio, ...among) : f)),
+        amplitude: list(parameters, "amplitude").map((a, i) => (free[i] ? clamp(a * fromDecibels(macroGain(macros, hz[i] ?? 100) + levelDb), ...AMPLITUDES) : a)),
       };
     });
+    if (!isLimited(bench)) return changed;
+    if (fixed < 0) return scaled(changed, MACRO_DB * macros.level);
+    const place = lines[fixed] ?? 100;
+    return anchored(bench.author, bench, changed, place, decibels(bench.author, bench, spec, [place]).map(([now]) => now ?? 0));
   },
 };
+
+/** Index of the strongest of some lines; -1 if there is none. */
+const strongest = (db: readonly number[], isOne: (index: number) => boolean) => db.reduce((best, now, i) => (isOne(i) && now > (db[best] ?? -Infinity) ? i : best), -1);
+
+/** A specification whose level is changed by decibels. */
+const scaled = (spec: Spec, db: number): Spec => ({ ...spec, points: spec.points.map((point) => ({ ...point, level: point.level * fromDecibels(db) })) });
 
 const SHAPERS: Record<string, Shaper> = {
   [BANDS]: bandsShaper,

@@ -44,9 +44,9 @@ export async function script(entry, plugins = []) {
 
 export const dataAddress = (text) => `data:text/javascript;base64,${Buffer.from(text).toString("base64")}`;
 
-/** The page of a player with places for its name, licence, library and texture. */
+/** The page of a player with places for its name, options, library and texture. */
 export async function playerPage() {
-  const { code, css } = await script("src/player/player.ts");
+  const { code, css } = await script("src/player/player.tsx");
   const [inner, style] = [`\n${code.replaceAll("</script", "<\\/script")}\n`, `\n${css}\n`];
   const html = await readFile(path.join(here, "src/player/player.html"), "utf8");
   const filled = html

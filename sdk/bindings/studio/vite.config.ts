@@ -1,4 +1,6 @@
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
 import { defineConfig, type Plugin } from "vite";
 
 import { dataAddress, ownModules, playerPage, script } from "./parts.mjs";
@@ -27,7 +29,7 @@ function parts(mode: string): Plugin {
       }
       if (id !== `\0${PLAYER}`) return null;
       const page = await playerPage();
-      if (mode === "single") return `export default ${JSON.stringify(`data:text/plain;base64,${Buffer.from(page).toString("base64")}`)};`;
+      if (mode === "single") return `export default ${JSON.stringify(`data:application/gzip;base64,${gzipSync(page, { level: 9 }).toString("base64")}`)};`;
       const reference = this.emitFile({ type: "asset", name: "player.txt", source: page });
       return `export default import.meta.ROLLUP_FILE_URL_${reference};`;
     },

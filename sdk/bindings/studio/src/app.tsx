@@ -28,7 +28,7 @@ const SCREENS: { id: Screen; name: string; icon: IconName; show: () => preact.JS
   { id: "vary", name: "Vary", icon: "vary", show: Vary },
   { id: "compare", name: "Compare", icon: "compare", show: Compare },
   { id: "record", name: "Record", icon: "record", show: Record },
-  { id: "give", name: "Give", icon: "give", show: Give },
+  { id: "give", name: "Save", icon: "give", show: Give },
 ];
 
 function Tabs() {

@@ -1,15 +1,17 @@
-// What is given away: the file with its name and licence, sound, a link, and a player of one file.
+// Saving and sharing: the file with its name and licence, the shelf, a link, a player page, sound and a block for microcontrollers.
 
 import { signal } from "@preact/signals";
 
 import playerAddress from "virtual:player";
 import { compressedLibrary, plainBase64 } from "./modules.ts";
 import { theAuthor } from "./author.ts";
+import { finish } from "./first-steps.ts";
 import { toLink } from "./link.ts";
 import { fileName, save, wav } from "./save.ts";
 import { isolated } from "./names.ts";
 import { add, lostText } from "./shelf.ts";
 import { pilotForce, pilotSpeed } from "./motion.ts";
+import type { PlayerOptions } from "./player/options.ts";
 import { edit, present, say, settle, texture } from "./state.ts";
 
 export interface Label {
@@ -20,10 +22,11 @@ export interface Label {
   readonly description: string;
 }
 
-const WAV_S = 10;
+/** Seconds of a saved sound. */
+export const SOUND_S = 10;
 const WAV_HZ = 48_000;
 
-/** Who gives away; asked once, and kept in this tab. */
+/** Licence and author that were entered last in this tab. New textures begin with them. */
 export const giver = signal({ license: "CC0-1.0", author: "" });
 
 /** The label of the present texture. */
@@ -67,6 +70,7 @@ export function saveTexture() {
   if (!document) return;
   const file = fileName(document.name, "htex");
   save(document.bytes, file, "application/octet-stream");
+  finish("keep");
   say(`${file} is saved, ${document.bytes.length} bytes.`, "good");
 }
 
@@ -74,24 +78,25 @@ export async function keepOnShelf() {
   const document = present.peek();
   if (!document) return;
   const added = await add(document.bytes);
+  finish("keep");
   const lost = lostText([added]);
-  say(`${isolated(added.name)} is on your shelf${lost ? `. ${lost}` : ", on this device."}`, lost ? "bad" : "good");
+  say(`${isolated(added.name)} is on the shelf${lost ? `. ${lost}` : ", on this device."}`, lost ? "bad" : "good");
 }
 
-/** Ten seconds at the motion of the pad's sliders; full scale is one unit of the texture times the factor that is told. */
+/** Saves ten seconds at the motion of the pad's sliders. Full scale is one unit of the texture. */
 export async function saveSound() {
   const [now, document] = [texture.peek(), present.peek()];
   if (!now || !document) return;
   const motion = { speed: pilotSpeed.peek(), force: pilotForce.peek() };
   const voice = now.voice({ model: document.model, rate: WAV_HZ, motion });
-  const samples = voice.render(WAV_S * WAV_HZ);
+  const samples = voice.render(SOUND_S * WAV_HZ);
   voice.free();
   const { riff } = (await theAuthor()).rights(now);
   save(wav(samples, WAV_HZ, riff), fileName(document.name, "wav"), "audio/wav");
-  say(`${WAV_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
+  say(`${SOUND_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
 }
 
-/** A block for the player on microcontrollers, as a C header: the texture's default condition by the present model. */
+/** Saves a block for the player on microcontrollers, as a C header: the present model at the texture's default condition. */
 export async function saveBlock() {
   const [now, document] = [texture.peek(), present.peek()];
   if (!now || !document) return;
@@ -99,7 +104,7 @@ export async function saveBlock() {
   const baked = (await theAuthor()).bake(now, { name: file.replace(/\.h$/, ""), model: document.model });
   save(new TextEncoder().encode(baked.c), file, "text/x-c");
   const at = `${baked.speeds.map((x) => x.toFixed(0)).join(", ")} mm/s and ${baked.forces.map((x) => x.toFixed(2)).join(", ")} N`;
-  say(`${baked.bytes.length} bytes for a player at ${baked.rate_hz} Hz, of ${at}; nine bands err by up to ${baked.error_at_conditions_db.toFixed(2)} dB there.`);
+  say(`${baked.bytes.length} bytes for a player at ${baked.rate_hz} Hz, made at ${at}. There, the largest error of nine bands is ${baked.error_at_conditions_db.toFixed(2)} dB.`);
 }
 
 export function link() {
@@ -107,20 +112,45 @@ export function link() {
   return document ? toLink(document.bytes, location.href) : "";
 }
 
+export async function copyLink() {
+  await navigator.clipboard.writeText(link());
+  finish("keep");
+  say("The link is copied.", "good");
+}
+
 const escaped = (text: string) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
-/** A page that plays this texture, without anything else. */
+/** The page of a player with places for a texture. The page of one file has it compressed. */
+async function playerTemplate() {
+  const { headers, body } = await fetch(playerAddress);
+  if (!body) throw new Error("The player page cannot be read. Reload this page.");
+  const isCompressed = headers.get("content-type") === "application/gzip";
+  return new Response(isCompressed ? body.pipeThrough(new DecompressionStream("gzip")) : body).text();
+}
+
+/** The address of this page, for *Open in the studio*; null for a file, and for a server of this machine, whose name is secret. */
+function studioAddress() {
+  const { protocol, hostname, href } = location;
+  return protocol.startsWith("http") && !hostname.endsWith(".localhost") ? href.split("#")[0] : null;
+}
+
+/** Saves a page that plays this texture, in one file. */
 export async function savePlayer() {
   const document = present.peek();
   if (!document) return;
-  const [template, library] = await Promise.all([fetch(playerAddress).then((one) => one.text()), compressedLibrary()]);
-  const license = texture.peek()?.manifest["license"];
+  const [template, library] = await Promise.all([playerTemplate(), compressedLibrary()]);
+  const { model, name } = document;
+  const options: PlayerOptions = { model, file: fileName(name, "htex"), studio: studioAddress() ?? null, speed: pilotSpeed.peek(), force: pilotForce.peek() };
   const parts: Record<string, string> = {
-    __NAME__: escaped(document.name),
-    __LICENSE__: license ? `Licence: ${escaped(String(license))}` : "",
+    __NAME__: escaped(name),
+    // No text in it can end the script element.
+    __OPTIONS__: JSON.stringify(options).replaceAll("<", "\\u003c"),
     __LIBRARY__: library,
     __TEXTURE__: await plainBase64(document.bytes),
   };
-  const page = template.replaceAll(/__(NAME|LICENSE|LIBRARY|TEXTURE)__/g, (word) => parts[word] ?? "");
-  save(new TextEncoder().encode(page), fileName(document.name, "html"), "text/html");
+  const page = template.replaceAll(/__(NAME|OPTIONS|LIBRARY|TEXTURE)__/g, (word) => parts[word] ?? "");
+  const file = fileName(name, "html");
+  save(new TextEncoder().encode(page), file, "text/html");
+  finish("keep");
+  say(`${file} is saved. Open it in any browser.`, "good");
 }

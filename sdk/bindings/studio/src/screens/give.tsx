@@ -1,25 +1,24 @@
-// Give: the texture leaves as a file, as sound, as a link, or in a page of its own.
-
-import { useState } from "preact/hooks";
+// Save: name the texture, then save it as a file, keep it on the shelf, or share it.
 
 import { theAuthor, author } from "../author.ts";
-import { complete, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, write, type Label } from "../giving.ts";
+import { complete, copyLink, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, write, type Label } from "../giving.ts";
 import { Icon } from "../parts/icons.tsx";
 import { TextField } from "../parts/text-field.tsx";
-import { pilotForce, pilotSpeed } from "../motion.ts";
 import { fileName } from "../save.ts";
-import { snippets } from "../snippets.ts";
 import { fail, present, say, settle } from "../state.ts";
+import { webPage } from "../web-snippet.ts";
 
 const LICENCES = ["CC0-1.0", "CC-BY-4.0", "CC-BY-SA-4.0", "CC-BY-NC-4.0", "MIT"];
+
+/** Completes the label, and then does something with the texture. */
+const after = (then: () => unknown) => () => complete().then(then).catch(fail);
 
 /** What is typed is written at once, so it is there on the other screens, and after a reload. */
 function LabelForm() {
   const { name, license, author: by, tags, description } = labelOf();
   const field = (part: keyof Label) => ({ onText: (text: string) => write({ [part]: text }).catch(fail), onSettled: settle });
   return (
-    <div class="panel stack">
-      <h2>Label</h2>
+    <div class="panel stack save-label">
       <TextField label="Name" isRequired value={name} {...field("name")} />
       <TextField label="Licence" list="licences" value={license} {...field("license")} />
       <datalist id="licences">
@@ -27,16 +26,12 @@ function LabelForm() {
           <option key={one} value={one} />
         ))}
       </datalist>
-      <TextField label="Author" value={by} {...field("author")} />
       <TextField label="Tags, with commas" value={tags} {...field("tags")} />
       <TextField label="Description" rows={2} value={description} {...field("description")} />
+      <TextField label="Author" value={by} {...field("author")} />
+      {/* The place of <Appearance />. */}
     </div>
   );
-}
-
-async function copy(text: string, what: string) {
-  await navigator.clipboard.writeText(text);
-  say(`${what} is copied.`, "good");
 }
 
 function Report() {
@@ -52,82 +47,104 @@ function Report() {
   );
 }
 
-function Snippets() {
-  const [language, choose] = useState("HTML");
-  const all = snippets(fileName(present.value?.name ?? "texture", "htex"), pilotSpeed.value, pilotForce.value);
-  const shown = all.find((one) => one.language === language) ?? all[0];
+function Actions() {
   return (
-    <div class="panel stack">
-      <h2>In your program</h2>
-      <div class="segments" role="group" aria-label="Language">
-        {all.map((one) => (
-          <button key={one.language} aria-pressed={one.language === language} onClick={() => choose(one.language)}>
-            {one.language}
-          </button>
-        ))}
-      </div>
-      <pre class="snippet" tabIndex={0} aria-label={`Program in ${language}`}>
-        {shown?.text}
-      </pre>
-      <button class="button" onClick={() => copy(shown?.text ?? "", "The program").catch(fail)}>
-        Copy
+    <div class="save-actions">
+      <button class="button strong" onClick={after(saveTexture)}>
+        <Icon name="give" />
+        <span>
+          Save <small>.htex</small>
+        </span>
+      </button>
+      <button class="button" onClick={after(keepOnShelf)}>
+        Keep on the shelf
       </button>
     </div>
   );
 }
 
-function Link() {
-  const address = link();
-  const isFile = location.protocol === "file:";
+/** One way to share: what it is, and the button. */
+function Way({ name, onChoose, children }: { name: string; onChoose: () => void; children: preact.ComponentChildren }) {
   return (
-    <div class="panel stack">
-      <h2>Link</h2>
-      <p class="small soft">
-        The texture itself is in the part after <code>#t=</code>, {Math.ceil(address.length / 100) / 10} kB; no server sees it.
-        {isFile && " This page is a file of yours: the link opens for whoever has the same file at the same place. Serve the folder for links to others."}
-      </p>
-      <button class="button" onClick={() => complete().then(() => copy(link(), "The link")).catch(fail)}>
-        Copy the link
+    <li>
+      <button class="button" onClick={onChoose}>
+        {name}
       </button>
+      <p class="small soft">{children}</p>
+    </li>
+  );
+}
+
+function Share() {
+  const isFile = location.protocol === "file:";
+  const kB = Math.ceil(link().length / 100) / 10;
+  return (
+    <div class="panel stack save-share">
+      <h2>Share</h2>
+      <ul class="ways">
+        <Way name="Copy the link" onChoose={after(copyLink)}>
+          The link contains the whole texture after <code>#t=</code> ({kB} kB). Browsers do not send this part to a server.
+          {isFile && " You opened this page from a file, so the link works only on this computer. To share links, put the studio's folder on a web server."}
+        </Way>
+        {/* The place of a QR code of `link()`. */}
+        <Way name="Save a player page" onChoose={after(savePlayer)}>
+          One file with a pad that plays this texture in any browser, without a network.
+        </Way>
+        <Way name="Save as WAV" onChoose={after(saveSound)}>
+          {SOUND_S} s of sound at the speed and force of the sliders.
+        </Way>
+        <Way name="Save a microcontroller block" onChoose={after(saveBlock)}>
+          A C header for the player on microcontrollers, at one recorded condition. For several conditions, use <code>htex bake</code>.
+        </Way>
+      </ul>
     </div>
+  );
+}
+
+async function copy(text: string, what: string) {
+  await navigator.clipboard.writeText(text);
+  say(`${what} is copied.`, "good");
+}
+
+function InPage() {
+  const text = webPage(fileName(present.value?.name ?? "texture", "htex"));
+  return (
+    <details class="panel">
+      <summary>
+        <h2>In your own web page</h2>
+      </summary>
+      <div class="stack">
+        <pre class="snippet" tabIndex={0} aria-label="Web page">
+          {text}
+        </pre>
+        <div class="row">
+          <button class="button" onClick={() => copy(text, "The web page").catch(fail)}>
+            Copy
+          </button>
+          <span class="small soft">The page Languages of the documentation shows how to play it in Rust, C, C#, Python and Node.js.</span>
+        </div>
+      </div>
+    </details>
   );
 }
 
 export function Give() {
   if (!author.value) theAuthor().catch(fail);
-  const after = (then: () => unknown) => () => complete().then(then).catch(fail);
   return (
     <section aria-labelledby="give-title">
       <header class="screen-head">
         <div>
-          <h1 id="give-title">Give away</h1>
-          <p>{present.value?.bytes.length} bytes: a file that plays for any length of time, at any speed and force.</p>
+          <h1 id="give-title">Save</h1>
+          <p>The file has {present.value?.bytes.length} bytes. It plays for any length of time, at any speed and force.</p>
         </div>
-        <button class="button strong" onClick={after(saveTexture)}>
-          <Icon name="give" /> Save .htex
-        </button>
       </header>
-      <div class="columns">
+      <div class="save">
         <LabelForm />
-        <div class="stack">
-          <div class="panel stack">
-            <h2>Files</h2>
-            <div class="row">
-              <button class="button" onClick={after(keepOnShelf)}>Keep on my shelf</button>
-              <button class="button" onClick={after(saveSound)}>Save as WAV</button>
-              <button class="button" onClick={after(savePlayer)}>Save a player page</button>
-              <button class="button" onClick={after(saveBlock)}>Save as C block</button>
-            </div>
-            <p class="small soft">
-              The player page is one file that plays this texture, without a network. The C block is a header for the player on microcontrollers, at the default condition; <code>htex bake</code> makes blocks of several.
-            </p>
-            <Report />
-          </div>
-          <Link />
-        </div>
-      </div>
-      <div class="below">
-        <Snippets />
+        <Actions />
+        <Share />
+        {/* The place of <Exports />. */}
+        <InPage />
+        <Report />
       </div>
     </section>
   );

@@ -117,7 +117,7 @@ test("undo across an opened texture brings back its loudness and what it was whe
 
 test("a name and a description are there on other screens and after a reload, without a press on Save", async () => {
   const page = await openStudio(browser, server.address);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").click();
   await page.keyboard.press("ControlOrMeta+a");
   await page.keyboard.type("Grandmother's curtain");
@@ -126,7 +126,7 @@ test("a name and a description are there on other screens and after a reload, wi
   await page.keyboard.type("Heavy, with a hem.");
   await goTo(page, "Shape");
   await page.locator(".piece", { hasText: "Grandmother's curtain" }).waitFor();
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   const isThere = async () => {
     await page.waitForFunction(() => document.querySelector("main input")?.value === "Grandmother's curtain");
     assert.equal(await page.getByLabel("Description").inputValue(), "Heavy, with a hem.");
@@ -134,7 +134,7 @@ test("a name and a description are there on other screens and after a reload, wi
   await isThere();
   await page.reload();
   await ready(page);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await isThere();
   // Two fields are two steps.
   await pressUndo(page);
@@ -150,10 +150,10 @@ test("a name and a description are there on other screens and after a reload, wi
 
 /** Puts the present texture on the shelf under a name. */
 async function keepAs(page, name) {
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").fill(name);
-  await page.getByRole("button", { name: "Keep on my shelf" }).click();
-  await page.getByText(`${name} is on your shelf`).waitFor();
+  await page.getByRole("button", { name: "Keep on the shelf" }).click();
+  await page.getByText(`${name} is on the shelf`).waitFor();
 }
 
 const cards = (page) => page.locator(".card-name").allTextContents();
@@ -409,9 +409,9 @@ test("a texture that the browser did not store is not shown as stored", async ()
   const session = await page.context().newCDPSession(page);
   const origin = new URL(server.address).origin;
   await session.send("Storage.overrideQuotaForOrigin", { origin, quotaSize: 1 });
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").fill("Too much");
-  await page.getByRole("button", { name: "Keep on my shelf" }).click();
+  await page.getByRole("button", { name: "Keep on the shelf" }).click();
   await page.locator(".notice.bad", { hasText: "did not store" }).waitFor();
   await page.locator(".piece", { hasText: "not stored" }).waitFor();
   await goTo(page, "Shelf");
@@ -444,7 +444,7 @@ async function assertWorksWithoutStorage(page, told) {
   await draw(page);
   await pressUndo(page);
   assert.deepEqual(await bytesOf(page), before);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").fill("Without storage");
   const { name, bytes } = await saved(page, () => page.getByRole("button", { name: "Save .htex" }).click());
   assert.equal(name, "without-storage.htex");
@@ -532,12 +532,12 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
 test("a name that changes the direction of text turns nothing around it", async () => {
   const page = await openStudio(browser, FILE);
   const name = "abc \u202edef\u2067 ghi";
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").click();
   await page.keyboard.press("ControlOrMeta+a");
   await page.keyboard.insertText(name);
-  await page.getByRole("button", { name: "Keep on my shelf" }).click();
-  await page.getByText(/is on your shelf/).waitFor();
+  await page.getByRole("button", { name: "Keep on the shelf" }).click();
+  await page.getByText(/is on the shelf/).waitFor();
   /** Whether the last letters of an element stand from left to right. */
   const runsRight = (locator) =>
     locator.evaluate((element) => {
@@ -566,14 +566,15 @@ test("a name that changes the direction of text turns nothing around it", async 
     const options = await page.locator("main option").allTextContents();
     assert.ok(options.some((text) => text.includes("abc def ghi")) && options.every((text) => !/[\u202a-\u202e\u2066-\u2069]/.test(text)), options.join());
   }
-  // The page of one texture, too. The file keeps the name as it was typed.
-  await goTo(page, "Give");
+  // The player page shows the name without these characters. The file keeps the name as it was typed.
+  await goTo(page, "Save");
   const { bytes } = await saved(page, () => page.getByRole("button", { name: "Save a player page" }).click());
   assert.equal(await page.evaluate(() => htexStudio.present.value.name), name);
   const file = path.join(folder, "player.html");
   await writeFile(file, bytes);
   const player = await openStudio(browser, pathToFileURL(file).href);
-  assert.equal(await player.locator("h1 bdi").textContent(), name);
+  assert.equal(await player.locator("h1 bdi").textContent(), "abc def ghi");
+  assert.ok(await runsRight(player.locator("h1")), "player");
   await closed(player);
   await closed(page);
 });

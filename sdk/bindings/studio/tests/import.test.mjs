@@ -96,7 +96,7 @@ test("a model file of HaTT and a glTF file open at once", async () => {
   await drop(page, "chair.glb");
   await onPad(page, "hum");
   assert.ok((await bytesOf(page)).equals(await readFile(file("hum.htex"))));
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   assert.equal(await page.getByLabel("Licence").inputValue(), "CC-BY-4.0");
   await closed(page);
 });
@@ -115,7 +115,7 @@ test("a map states the distance of its pixels or is asked for it, by keys alone"
   await page.keyboard.press("Enter");
   await onPad(page, "row");
   assert.ok((await bytesOf(page)).equals(await imported("row.png", ...GIVEN, "--pitch", "0.5")));
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   assert.equal(await page.getByLabel("Licence").inputValue(), "CC-BY-4.0");
   await closed(page);
 });

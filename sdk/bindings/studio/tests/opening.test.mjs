@@ -302,7 +302,7 @@ test("another recording clears the last fit and what was said of the one before"
   await goTo(page, "Compare");
   await page.getByRole("heading", { name: "The recording against each model" }).waitFor();
   await page.getByRole("button", { name: "Compare by ear" }).first().click();
-  await page.getByText(/It plays as it was recorded/).waitFor();
+  await page.getByText(/It plays as it was recorded, /).waitFor();
   await closed(page);
 });
 
@@ -396,7 +396,7 @@ test("nobody knows how loud full scale is: models are ranked by shape, and nothi
   await page.getByText("It is not known how strong cloth was").waitFor();
   assert.equal(await page.getByText(/A difference is felt|A finger feels/).count(), 0);
   // The file says so, too.
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   const { bytes } = await saved(page, () => page.getByRole("button", { name: "Save .htex" }).click());
   await writeFile(file("unknown.htex"), bytes);
   assert.match(htex("info", file("unknown.htex"), "--json"), /level-unknown/);

@@ -79,7 +79,7 @@ for (const [way, address] of [["the file", () => FILE], ["the folder", () => ser
       htexStudio.moveHandle(7, 0, htexStudio.handles.value[7].db + 9, "one");
       htexStudio.setMacro("brighter", 0.4);
     });
-    await goTo(page, "Give");
+    await goTo(page, "Save");
     await page.getByLabel("Name").fill("Shaped in the page");
     const { name, bytes } = await saved(page, () => page.getByRole("button", { name: "Save .htex" }).click());
     assert.equal(name, "shaped-in-the-page.htex");
@@ -132,7 +132,7 @@ test("a link brings the texture back bit for bit", async () => {
   const page = await openStudio(browser, server.address, { permissions: ["clipboard-read", "clipboard-write"] });
   await shaping(page);
   await page.evaluate(() => htexStudio.setMacro("rougher", 0.5));
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByRole("button", { name: "Copy the link" }).click();
   await page.getByText("The link is copied.").waitFor();
   const [first, link] = [await bytesOf(page), await page.evaluate(() => navigator.clipboard.readText())];
@@ -174,11 +174,10 @@ test("a bar that is moved moves alone, by whole steps", async () => {
   await closed(page);
 });
 
-test("a drag of a slider is one step, and a number is taken as it is typed", async () => {
+test("a drag of a knob is one step, and a number is taken as it is typed", async () => {
   const page = await openStudio(browser, FILE);
   await shaping(page);
-  const slider = page.locator("main input[type=range]").first();
-  const { x, y, width, height } = await slider.boundingBox();
+  const { x, y, width, height } = await page.getByRole("slider", { name: "Rougher" }).boundingBox();
   await page.mouse.move(x + width / 2, y + height / 2);
   await page.mouse.down();
   for (let i = 1; i < 8; i++) await page.mouse.move(x + width / 2 + 5 * i, y + height / 2);
@@ -241,10 +240,10 @@ test("own textures and the work of last time are there again", async () => {
   const page = await openStudio(browser, server.address);
   await shaping(page);
   await page.evaluate(() => htexStudio.setMacro("peak", 0.25));
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").fill("Mine");
-  await page.getByRole("button", { name: "Keep on my shelf" }).click();
-  await page.getByText(/is on your shelf/).waitFor();
+  await page.getByRole("button", { name: "Keep on the shelf" }).click();
+  await page.getByText(/is on the shelf/).waitFor();
   const work = await bytesOf(page);
   await page.reload();
   await ready(page);
@@ -351,8 +350,8 @@ test("a baked block is the one of the command", async () => {
   await goTo(page, "Shelf");
   await page.getByRole("button", { name: /^Corduroy/ }).click();
   await page.waitForFunction(() => htexStudio.texture.value.name === "Corduroy");
-  await goTo(page, "Give");
-  await tabTo(page, ({ text }) => text === "Save as C block");
+  await goTo(page, "Save");
+  await tabTo(page, ({ text }) => text === "Save a microcontroller block");
   const { name, bytes } = await saved(page, () => page.keyboard.press("Enter"));
   assert.equal(name, "corduroy.h");
   const [file, header] = [path.join(folder, "corduroy.htex"), path.join(folder, "corduroy.h")];
@@ -386,7 +385,7 @@ test("ten blind trials have a p-value and a table", async () => {
 
 test("a player page plays alone", async () => {
   const page = await openStudio(browser, FILE);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   const { name, bytes } = await saved(page, () => page.getByRole("button", { name: "Save a player page" }).click());
   const file = path.join(folder, name);
   await writeFile(file, bytes);
@@ -442,7 +441,7 @@ test("keys alone lead from the shelf to a saved file", async () => {
   await tabTo(page, ({ label }) => label?.startsWith("Spectrum of"));
   for (const key of ["ArrowRight", "ArrowUp", "ArrowUp", "ArrowUp"]) await page.keyboard.press(key);
   assert.notDeepEqual(await bytesOf(page), first);
-  await tabTo(page, ({ text }) => text === "Give", "Shift+Tab");
+  await tabTo(page, ({ text }) => text === "Save", "Shift+Tab");
   await page.keyboard.press("Enter");
   await tabTo(page, ({ text }) => text === "Save .htex");
   const { bytes } = await saved(page, () => page.keyboard.press("Enter"));

@@ -55,8 +55,8 @@ async function screens(page, suffix) {
   await page.locator(".ranked li").first().waitFor();
   await shot(page, `record-${suffix}`);
   await page.evaluate(() => document.querySelector(".notice button")?.click());
-  await goTo(page, "Give");
-  await shot(page, `give-${suffix}`);
+  await goTo(page, "Save");
+  await shot(page, `save-${suffix}`);
   await goTo(page, "Record");
   await page.locator("input[type=file]").setInputFiles(ahap);
   await page.getByRole("form").waitFor();
@@ -89,7 +89,7 @@ async function way(page) {
   await draw(page, 0.4);
   await page.evaluate(() => document.querySelector(".notice button")?.click());
   await shot(page, "way-3-shaped");
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByLabel("Name").fill("My denim");
   const saved = page.waitForEvent("download");
   await page.getByRole("button", { name: "Save .htex" }).click();

@@ -28,7 +28,7 @@ test("the command serves the studio, which shapes and plays under its policy", a
   await page.evaluate(() => htexStudio.setMacro("rougher", 0.4));
   await page.getByRole("button", { name: "Steady" }).click();
   await page.waitForFunction(() => Math.max(...htexStudio.heard(new Float32Array(1024))) > 0.02);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByText("The file passes validation").waitFor();
   assert.deepEqual(page.requests.filter((url) => !url.startsWith(address)), []);
   assert.deepEqual(page.errors, []);

@@ -15,7 +15,7 @@ export const { HTEX_STUDIO, HTEX_COMMAND, HTEX_CHROMIUM = "/usr/bin/chromium", H
 export const FILE = pathToFileURL(path.join(HTEX_STUDIO, "studio.html")).href;
 
 /** Screens, by the names of their tabs. */
-export const SCREENS = ["Shelf", "Shape", "Mix", "Vary", "Compare", "Record", "Give"];
+export const SCREENS = ["Shelf", "Shape", "Mix", "Vary", "Compare", "Record", "Save"];
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm", ".txt": "text/plain" };
 
@@ -133,4 +133,21 @@ export async function dropPaths(page, paths, { x = 400, y = 300 } = {}) {
   const data = { items: [], files: paths, dragOperationsMask: 1 };
   for (const type of ["dragEnter", "dragOver", "drop"]) await session.send("Input.dispatchDragEvent", { type, x, y, data });
   await session.detach();
+}
+
+/** Moves a finger over the page. */
+export async function swipe(page, from, to, steps = 12) {
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+  await touch("touchStart", [{ x: from[0], y: from[1] }]);
+  for (let i = 1; i <= steps; i++) {
+    const at = (axis) => from[axis] + ((to[axis] - from[axis]) * i) / steps;
+    await touch("touchMove", [{ x: at(0), y: at(1) }]);
+    await page.waitForTimeout(16);
+  }
+  // A finger that rests before it leaves does not throw the page.
+  await page.waitForTimeout(150);
+  await touch("touchMove", [{ x: to[0], y: to[1] }]);
+  await touch("touchEnd", []);
+  await frames(page);
 }

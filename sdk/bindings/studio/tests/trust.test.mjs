@@ -137,7 +137,7 @@ test("an imported model file is shown, drawn on and kept at the conditions that 
   await open(page, path.join(folder, "felt.xml"), "Felt");
   await goTo(page, "Shape");
   await page.getByText("displayed at 240 mm/s, 3.00 N").waitFor();
-  await page.getByRole("button", { name: "Redraw as bands" }).click();
+  await page.getByRole("button", { name: "Redraw as a free curve" }).click();
   await page.waitForFunction(() => htexStudio.handles.value.length > 0);
   const db = await page.evaluate(() => htexStudio.handles.value.map((handle) => handle.db));
   assert.ok(db.every((level) => level > -60), String(db));
@@ -236,7 +236,7 @@ test("pair and settings of a blind test stay, and its table names them", async (
   const page = await openStudio(browser, FILE, { init: alternating });
   await take(page, "Oak");
   await shaping(page);
-  const macro = page.getByRole("main").getByRole("slider", { name: "Rougher" });
+  const macro = page.getByRole("slider", { name: "Rougher" });
   await macro.focus();
   for (let i = 0; i < 20; i++) await page.keyboard.press("ArrowRight");
   await page.getByRole("button", { name: "Steady" }).click();

@@ -11,13 +11,25 @@ const TAPPED_MS = 2500;
 
 /** What is looked at; a texture that has yet to be opened may come when something else is. */
 let look: object | null = null;
+/** What sounds because it is looked at. */
+let auditioned: Sounding | null = null;
 
 /**
  * Plays a texture while the user browses it. If the finger rests, an autopilot slides it back and
  * forth.
  */
 export function audition(sounding: Sounding) {
+  auditioned = sounding;
   tried.value = sounding;
+  lend();
+}
+
+/** What is looked at is on the pad now: it sounds as the present texture, for as long as it is looked at. */
+export function auditionPresent() {
+  if (!look) return;
+  // A texture that is still being opened comes too late.
+  look = {};
+  if (tried.peek() === auditioned) tried.value = null;
   lend();
 }
 
@@ -35,11 +47,11 @@ export function hearChange() {
   if (lent) endSoon();
 }
 
-/** Plays the present texture again. */
+/** Plays the present texture again. What sounds for another reason, such as a side on Compare, goes on. */
 export function endAudition() {
   look = null;
   clearTimeout(ending);
-  tried.value = null;
+  if (tried.peek() === auditioned) tried.value = null;
   if (!lent) return;
   lent = false;
   setPilot("hand");
@@ -56,10 +68,15 @@ function endSoon() {
   ending = window.setTimeout(endAudition, TAPPED_MS);
 }
 
-/** Handlers of an element that plays a texture while it is looked at. */
-export function onLook(sounding: () => Promise<Sounding | null> | Sounding | null) {
+/**
+ * Handlers of an element that plays a texture while it is looked at. `restsMs`: how long it has to
+ * be looked at first, where pointers pass on their way to something else.
+ */
+export function onLook(sounding: () => Promise<Sounding | null> | Sounding | null, restsMs = 0) {
   const begin = async () => {
     const own = (look = {});
+    if (restsMs > 0) await new Promise((resolve) => setTimeout(resolve, restsMs));
+    if (look !== own) return;
     const now = await sounding();
     if (now && look === own) audition(now);
   };

@@ -1,4 +1,5 @@
-// The history: the present texture, the textures before it, and the undone ones. Nothing here changes a history; each function returns a new one.
+// The history: the present texture, the textures before it, and the undone ones. There are two versions of the work, A and B, each with
+// its own history. Nothing here changes a history; each function returns a new one.
 
 /** A texture as it was opened: what edits of it are compared with, and what sets their loudness. */
 export interface Opened {
@@ -85,7 +86,56 @@ export function forth({ past, present, future }: History): History | null {
   return next && present ? { past: [...past, present], present: next, future: future.slice(1), gesture: null } : null;
 }
 
+/** Goes to one of the documents: undoes or redoes all steps between. */
+export function at(history: History, id: string): History | null {
+  const all = documents(history);
+  const place = all.findIndex((document) => document.id === id);
+  const present = all[place];
+  if (!present || place === history.past.length) return null;
+  return { past: all.slice(0, place), present, future: all.slice(place + 1), gesture: null };
+}
+
 /** Whether two histories have the same documents. */
 export function isSame(a: History, b: History) {
   return a.past === b.past && a.present === b.present && a.future === b.future;
+}
+
+export type Slot = "a" | "b";
+export const SLOTS: readonly Slot[] = ["a", "b"];
+
+/** Both versions, and the one that is on the pad. A version that was never used has an empty history. */
+export interface Work extends Readonly<Record<Slot, History>> {
+  readonly slot: Slot;
+}
+
+export const NO_WORK: Work = { slot: "a", a: EMPTY, b: EMPTY };
+
+export const otherThan = (slot: Slot): Slot => (slot === "a" ? "b" : "a");
+
+/** The history of the version that is on the pad. */
+export const active = (work: Work): History => work[work.slot];
+
+/** The same work with another history of the version that is on the pad. */
+export const withActive = (work: Work, history: History): Work => ({ ...work, [work.slot]: history });
+
+/** Puts a version on the pad. A version that was never used begins as a copy, with the history. */
+export function swapped(work: Work, slot: Slot): Work {
+  if (slot === work.slot) return work;
+  // A gesture does not go on in another version.
+  const left = { ...active(work), gesture: null };
+  return { ...withActive(work, left), slot, [slot]: work[slot].present ? work[slot] : left };
+}
+
+/** Copies the present texture to the other version, as a step of that version: undo leads back to what it was. */
+export function copied(work: Work): Work {
+  const { present } = active(work);
+  if (!present) return work;
+  const other = otherThan(work.slot);
+  const copy = { ...present, id: crypto.randomUUID(), change: `copy of ${work.slot.toUpperCase()}` };
+  return { ...work, [other]: step(work[other], copy, null) };
+}
+
+/** Whether two states of the work have the same documents, and the same version is on the pad. */
+export function isSameWork(one: Work, other: Work) {
+  return one.slot === other.slot && SLOTS.every((slot) => isSame(one[slot], other[slot]));
 }

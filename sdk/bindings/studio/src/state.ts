@@ -3,7 +3,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import { open, type Texture } from "htex";
 
-import { EMPTY, back, forth, isSame, step, type History } from "./history.ts";
+import { NO_WORK, active, at, back, forth, isSameWork, step, withActive, type Document, type History, type Work } from "./history.ts";
 import { usualGain } from "./loudness.ts";
 import { troubleOf } from "./trouble.ts";
 
@@ -18,7 +18,10 @@ export interface Notice {
   undo?: (() => unknown) | undefined;
 }
 
-export const history = signal<History>(EMPTY);
+/** Both versions of the work. */
+export const work = signal<Work>(NO_WORK);
+/** The history of the version that is on the pad. */
+export const history = computed(() => active(work.value));
 
 export const screen = signal<Screen>("shelf");
 export const notice = signal<Notice | null>(null);
@@ -52,22 +55,37 @@ function show(opened: Texture) {
   if (before && before !== opened) queueMicrotask(() => before.free());
 }
 
-/** Goes to another history. Its texture is opened first, so that it and the document change together. Returns where this began, or null. */
-export async function go(to: (now: History) => History | null): Promise<History | null> {
-  const from = history.peek();
+/** Goes to another state of the work. Its texture is opened first, so that it and the document change together. Returns where this began, or null. */
+export async function go(to: (now: Work) => Work | null): Promise<Work | null> {
+  const from = work.peek();
   const next = to(from);
-  if (!next?.present || next === from) return null;
-  const opened = next.present === from.present ? null : await open(next.present.bytes);
+  const document = next && active(next).present;
+  if (!document || next === from) return null;
+  const opened = document === active(from).present ? null : await open(document.bytes);
   // An edit came first: from there, the way may be another.
-  if (!isSame(history.peek(), from)) {
+  if (!isSameWork(work.peek(), from)) {
     opened?.free();
     return go(to);
   }
   batch(() => {
-    history.value = next;
+    work.value = next;
     if (opened) show(opened);
   });
   return from;
+}
+
+/** Goes along the history of the version that is on the pad. Returns the history before, or null. */
+async function along(way: (now: History) => History | null) {
+  const from = await go((now) => {
+    const next = way(active(now));
+    return next && withActive(now, next);
+  });
+  return from && active(from);
+}
+
+/** Takes a step in the version that is on the pad. */
+function record(document: Document, gesture: string | null) {
+  work.value = withActive(work.peek(), step(history.peek(), document, gesture));
 }
 
 /** Puts a texture on the desk as a new piece of work. */
@@ -77,7 +95,7 @@ export async function begin(bytes: Uint8Array, change: string, model?: string) {
   const origin = { id: crypto.randomUUID(), bytes, model: plays, gain: usualGain(opened, plays) };
   const document = { id: origin.id, bytes, name: opened.name, model: plays, change, origin };
   batch(() => {
-    history.value = step(history.peek(), document, null);
+    record(document, null);
     show(opened);
   });
 }
@@ -97,7 +115,7 @@ export function edit(made: { texture: Texture; bytes: Uint8Array; model: string;
   const { bytes, model, change } = made;
   const document = { id: crypto.randomUUID(), bytes, name: made.texture.name, model, change, origin: before.origin };
   batch(() => {
-    history.value = step(history.peek(), document, gesture);
+    record(document, gesture);
     show(made.texture);
   });
 }
@@ -106,19 +124,28 @@ export function edit(made: { texture: Texture; bytes: Uint8Array; model: string;
 export function choose(model: string) {
   const { present: before } = history.peek();
   if (!before || before.model === model) return;
-  history.value = step(history.peek(), { ...before, id: crypto.randomUUID(), model, change: "choose a model" }, null);
+  record({ ...before, id: crypto.randomUUID(), model, change: "choose a model" }, null);
 }
 
 /** Ends a gesture: what follows is a step of its own. */
 export function settle() {
-  if (history.peek().gesture !== null) history.value = { ...history.peek(), gesture: null };
+  const now = history.peek();
+  if (now.gesture !== null) work.value = withActive(work.peek(), { ...now, gesture: null });
 }
 
 export async function undo() {
-  const from = await go(back);
+  const from = await along(back);
   if (from) say(`Undone: ${from.present?.change}`);
 }
 
 export async function redo() {
-  if (await go(forth)) say(`Redone: ${history.peek().present?.change}`);
+  if (await along(forth)) say(`Redone: ${history.peek().present?.change}`);
+}
+
+/** Goes to one of the steps: undoes or redoes all between. */
+export async function visit(id: string) {
+  const from = await along((now) => at(now, id));
+  if (!from) return;
+  const steps = history.peek().past.length - from.past.length;
+  say(`${Math.abs(steps)} ${Math.abs(steps) === 1 ? "step" : "steps"} ${steps < 0 ? "undone" : "redone"}.`);
 }

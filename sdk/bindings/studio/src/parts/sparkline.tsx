@@ -36,6 +36,11 @@ export function Sparkline({ texture, model }: { texture: Texture; model: string 
   // Drawn anew only when the sliders choose another condition.
   const place = useMemo(() => computed(() => near(texture, model, sliders.value).place), [texture, model]).value;
   const path = useMemo(() => outline(texture, model, near(texture, model, sliders.peek()).at), [texture, model, place]);
+  return <Outline path={path} />;
+}
+
+/** An outline whose texture need not be open any more. */
+export function Outline({ path }: { path: string }) {
   return (
     <svg class="sparkline" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} preserveAspectRatio="none" aria-hidden="true">
       <path d={path} />

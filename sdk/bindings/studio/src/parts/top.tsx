@@ -1,4 +1,4 @@
-// What stands above: the texture's name, undo and redo, and the sound.
+// What stands above: the texture's name, undo and redo, the two versions, the sound, and the last steps.
 
 import { isBlind } from "../comparing.ts";
 import { audible, sound, toggleSound, volume } from "../engine.ts";
@@ -9,6 +9,8 @@ import { FeelOn } from "./feel-on.tsx";
 import { hinted } from "./hint.tsx";
 import { Icon } from "./icons.tsx";
 import { Name } from "./name.tsx";
+import { Slots } from "./slots.tsx";
+import { Strip, StripButton } from "./strip.tsx";
 
 function History() {
   const [undoKeys, redoKeys] = isTouch.value ? ["", ""] : [" (Ctrl Z)", " (Ctrl Shift Z)"];
@@ -55,12 +57,17 @@ export function Top() {
         {present.value && origin.value && present.value.bytes !== origin.value.bytes && <small> · edited</small>}
         {refusal.value && <small title={refusal.value}> · not stored</small>}
       </span>
-      <History />
+      <div class="versions">
+        <History />
+        <Slots />
+        <StripButton />
+      </div>
       <Sound />
       <FeelOn />
       <button class={hinted.value === "keep" ? "toggle roomy hinted" : "toggle roomy"} title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>
         <Icon name="give" /> Save…
       </button>
+      <Strip />
     </header>
   );
 }

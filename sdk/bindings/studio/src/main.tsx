@@ -10,6 +10,7 @@ import "./styles/shape.css";
 import "./styles/save.css";
 import "./styles/knobs.css";
 import "./styles/versions.css";
+import "./styles/qr.css";
 import "./styles/windows.css";
 import { App } from "./app.tsx";
 import { start } from "./start.ts";

@@ -1,4 +1,4 @@
-// What stays on this device: own textures, and the history.
+// What stays on this device: own textures, the history, and settings.
 
 import { signal } from "@preact/signals";
 
@@ -135,3 +135,7 @@ export const ownIds = () => transact("own", "readonly", (store) => ask(store.get
 export const ownTextures = (ids: readonly string[]) => transact("own", "readonly", (store) => Promise.all(ids.map((id) => ask<Own | undefined>(store.get(id)))));
 export const keepOwn = (own: readonly Own[]) => transact("own", "readwrite", (store) => Promise.all(own.map((one) => ask(store.put(one)))));
 export const forgetOwn = (id: string) => transact("own", "readwrite", (store) => ask(store.delete(id)));
+
+/** A setting of the page, which the user has entered. */
+export const setting = (name: string) => transact("session", "readonly", (store) => ask<string | undefined>(store.get(`setting ${name}`)));
+export const keepSetting = (name: string, text: string) => transact("session", "readwrite", (store) => ask(store.put(text, `setting ${name}`)));

@@ -1,18 +1,25 @@
-// The versions A and B and the strip of the last steps: by mouse, by keys and by touch.
+// The versions A and B, the strip of the last steps, and the QR code: by mouse, by keys and by touch.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
 import test, { after, before } from "node:test";
 
-import { FILE, bytesOf, frames, goTo, launch, openStudio, ready, serve, shaping, sounded } from "./studio.mjs";
+import { FILE, bytesOf, frames, goTo, launch, openStudio, ready, saved, serve, shaping, sounded } from "./studio.mjs";
 
 const PHONE = { hasTouch: true, isMobile: true, reducedMotion: "reduce", userAgent: "Mozilla/5.0 (Linux; Android 16; Pixel 9) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/156.0.0.0 Mobile Safari/537.36" };
 const UPRIGHT = { viewport: { width: 390, height: 844 }, ...PHONE };
 const LYING = { viewport: { width: 844, height: 390 }, ...PHONE };
 
-let browser, server;
+let browser, server, remote;
 
 before(async () => {
-  [browser, server] = await Promise.all([launch(), serve()]);
+  server = await serve();
+  const { port } = new URL(server.address);
+  // A name that is not of this device. Browsers play sound only at addresses that they trust.
+  remote = `http://studio.test:${port}/`;
+  const args = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--host-resolver-rules=MAP studio.test 127.0.0.1", `--unsafely-treat-insecure-origin-as-secure=http://studio.test:${port}`];
+  browser = await launch({ args });
 });
 
 after(async () => {
@@ -531,3 +538,158 @@ for (const [name, options] of [["upright", UPRIGHT], ["lying", LYING]]) {
     await closed(page);
   });
 }
+
+/** A page that decodes QR codes. */
+async function decoder() {
+  const page = await (await browser.newContext()).newPage();
+  await page.evaluate(await readFile(createRequire(import.meta.url).resolve("jsqr"), "utf8"));
+  return page;
+}
+
+/** The text of the QR code in a picture, and what part of a frame of so many pixels is white. */
+function decoded(page, png, frame = 0) {
+  return page.evaluate(async ([text, wide]) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${text}`)).blob());
+    const { width, height } = image;
+    const pen = new OffscreenCanvas(width, height).getContext("2d");
+    pen.drawImage(image, 0, 0);
+    const { data } = pen.getImageData(0, 0, width, height);
+    let [white, all] = [0, 0];
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        // Half a pixel at the edge may belong to what is around.
+        const depth = Math.min(x, y, width - 1 - x, height - 1 - y);
+        if (depth < 1 || depth >= wide) continue;
+        all += 1;
+        if ([0, 1, 2].every((i) => data[4 * (y * width + x) + i] === 255)) white += 1;
+      }
+    }
+    return { text: jsQR(data, width, height)?.data ?? null, width, white: white / all };
+  }, [png.toString("base64"), frame]);
+}
+
+const code = (page) => page.getByRole("img", { name: /^QR code of the link to / });
+
+async function showCode(page) {
+  await goTo(page, "Give");
+  await page.getByRole("button", { name: "Show the code" }).click();
+}
+
+for (const colorScheme of ["light", "dark"]) {
+  test(`a QR code leads another browser to the same texture, byte for byte: ${colorScheme}`, async () => {
+    const page = await openStudio(browser, remote, { colorScheme });
+    await load(page, "Oak");
+    await draw(page);
+    await showCode(page);
+    await code(page).waitFor();
+    const bytes = await bytesOf(page);
+    const empty = await decoder();
+    await code(page).scrollIntoViewIfNeeded();
+    const whole = await decoded(empty, await page.screenshot());
+    assert.ok(whole.text?.startsWith(`${remote}#t=`), String(whole.text));
+    // Around the code, four modules are white, in dark mode as well.
+    const [, size] = /viewBox%3D%220%200%20(\d+)/.exec(await code(page).getAttribute("src"));
+    const own = await decoded(empty, await code(page).screenshot(), Math.floor((4 * (await code(page).boundingBox()).width) / size));
+    assert.deepEqual([own.text, own.white], [whole.text, 1]);
+    const asked = server.asked.length;
+    const phone = await openStudio(browser, whole.text, UPRIGHT);
+    assert.deepEqual(await bytesOf(phone), bytes);
+    await phone.getByText("Oak came with the link.").waitFor();
+    assert.deepEqual(server.asked.slice(asked).filter((address) => address.includes("t=")), []);
+    await closed(phone);
+    // The images that are saved have the same code.
+    for (const type of ["PNG", "SVG"]) {
+      const file = await saved(page, () => page.getByRole("button", { name: `Save as ${type}` }).click());
+      assert.equal(file.name, `oak-code.${type.toLowerCase()}`);
+      if (type === "SVG") {
+        await empty.evaluate((text) => document.body.replaceChildren(Object.assign(new Image(700), { src: `data:image/svg+xml,${encodeURIComponent(text)}` })), file.bytes.toString());
+        file.bytes = await empty.locator("img").screenshot();
+      }
+      assert.equal((await decoded(empty, file.bytes)).text, whole.text, type);
+    }
+    await empty.context().close();
+    await closed(page);
+  });
+}
+
+test("the code follows the texture", async () => {
+  const page = await openStudio(browser, remote);
+  await load(page, "Oak");
+  await showCode(page);
+  await code(page).waitFor();
+  const first = await code(page).getAttribute("src");
+  await page.getByLabel("Name").click();
+  await page.keyboard.press("ControlOrMeta+a");
+  await page.keyboard.type("Floor");
+  await page.getByRole("img", { name: "QR code of the link to Floor" }).waitFor();
+  await page.waitForFunction((old) => document.querySelector("img.qr:not(.stale)")?.src !== old, first);
+  const empty = await decoder();
+  const { text } = await decoded(empty, await code(page).screenshot());
+  const bytes = await bytesOf(page);
+  assert.deepEqual(Buffer.from(text.split("#t=")[1], "base64url"), bytes);
+  await empty.context().close();
+  await closed(page);
+});
+
+test("a page that a phone cannot open asks for another address, which stays", async () => {
+  for (const [address, why] of [[FILE, /file on this device/], [server.address, /at 127\.0\.0\.1:\d+, an address that exists only on this device/], [server.address.replace("127.0.0.1", "localhost"), /at localhost:\d+, an address/], [server.address.replace("127.0.0.1", "abc123.localhost"), /at abc123\.localhost:\d+, an address/]]) {
+    const page = await openStudio(browser, address);
+    await load(page, "Oak");
+    await goTo(page, "Give");
+    await page.getByText(why).waitFor();
+    const show = page.getByRole("button", { name: "Show the code" });
+    assert.ok(await show.isDisabled());
+    const field = page.getByLabel("The studio's address for the phone");
+    for (const wrong of ["file:///home/me/studio.html", "studio.test", "javascript:alert(1)", "http://", "http://localhost:8420/", "https://abc.localhost/", "http://127.0.0.1/"]) {
+      await field.fill(wrong);
+      await page.keyboard.press("Tab");
+      await page.locator(".problem").waitFor();
+      assert.ok(await show.isDisabled(), wrong);
+    }
+    await field.fill(remote);
+    await page.keyboard.press("Tab");
+    // An address without https is taken, with a warning.
+    await page.locator(".problem", { hasText: "Over http, the phone shows an error." }).waitFor();
+    await field.fill("https://studio.test/");
+    await page.keyboard.press("Tab");
+    await page.locator(".problem").waitFor({ state: "detached" });
+    await field.fill(remote);
+    await page.keyboard.press("Tab");
+    await show.click();
+    await code(page).waitFor();
+    const empty = await decoder();
+    const { text } = await decoded(empty, await code(page).screenshot());
+    assert.ok(text.startsWith(`${remote}#t=`), text);
+    const phone = await openStudio(browser, text);
+    assert.deepEqual(await bytesOf(phone), await bytesOf(page));
+    await closed(phone);
+    await empty.context().close();
+    await page.reload();
+    await ready(page);
+    await goTo(page, "Give");
+    assert.equal(await page.getByLabel("The studio's address for the phone").inputValue(), remote);
+    await closed(page);
+  }
+  // An address that a phone can open needs no other.
+  const page = await openStudio(browser, remote);
+  await goTo(page, "Give");
+  assert.equal(await page.getByLabel("The studio's address for the phone").count(), 0);
+  await closed(page);
+});
+
+test("a texture that is too large for a code says so, and offers the link and the file", async () => {
+  const page = await openStudio(browser, remote, { permissions: ["clipboard-read", "clipboard-write"] });
+  await load(page, "Corrugated paper");
+  await showCode(page);
+  const bytes = await bytesOf(page);
+  await page.getByRole("main").getByText(`It has ${bytes.length.toLocaleString("en")} bytes`).waitFor();
+  assert.equal(await code(page).count(), 0);
+  await page.getByRole("button", { name: "Copy the phone's link" }).click();
+  await page.getByText("The link for the phone is copied.").waitFor();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.ok(link.startsWith(`${remote}#t=`) && link.length > 2953);
+  const { name, bytes: file } = await saved(page, () => page.getByRole("button", { name: "Save the file" }).click());
+  assert.equal(name, "corrugated-paper.htex");
+  assert.deepEqual(file, bytes);
+  await closed(page);
+});

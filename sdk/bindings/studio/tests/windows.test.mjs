@@ -483,6 +483,7 @@ for (const colorScheme of SCHEMES) {
     const page = await openStudio(browser, FILE, { colorScheme, forcedColors: "active" });
     /** Of a chosen element and one beside it, the colour inside the left edge. */
     const differ = async (chosen, other) => {
+      await chosen.scrollIntoViewIfNeeded();
       const boxes = await Promise.all([chosen, other].map((one) => one.boundingBox()));
       const [a, b] = await coloursAt(page, boxes.map(({ x, y, height }) => [x + 5, y + height / 2]));
       assert.notEqual(a, b, `${chosen} and ${other}`);

@@ -3,6 +3,7 @@
 import { theAuthor, author } from "../author.ts";
 import { complete, copyLink, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, write, type Label } from "../giving.ts";
 import { Icon } from "../parts/icons.tsx";
+import { Qr } from "../parts/qr.tsx";
 import { TextField } from "../parts/text-field.tsx";
 import { fileName } from "../save.ts";
 import { fail, present, say, settle } from "../state.ts";
@@ -86,7 +87,6 @@ function Share() {
           The link contains the whole texture after <code>#t=</code> ({kB} kB). Browsers do not send this part to a server.
           {isFile && " You opened this page from a file, so the link works only on this computer. To share links, put the studio's folder on a web server."}
         </Way>
-        {/* The place of a QR code of `link()`. */}
         <Way name="Save a player page" onChoose={after(savePlayer)}>
           One file with a pad that plays this texture in any browser, without a network.
         </Way>
@@ -142,6 +142,7 @@ export function Give() {
         <LabelForm />
         <Actions />
         <Share />
+        <Qr />
         {/* The place of <Exports />. */}
         <InPage />
         <Report />

@@ -53,7 +53,7 @@ enum Task {
     Web(Out),
     /// Build the studio as one file (DIR/studio.html) and as a folder for a web server (DIR/static)
     Studio(Out),
-    /// Rebuild the library of textures that comes with the studio:
+    /// Rebuild the library of textures that comes with the studio and with releases:
     /// sdk/bindings/studio/shelf/shelf.htexlib
     StudioShelf,
     /// Run a proof in full; continuous integration runs only a sample of it

@@ -1,4 +1,5 @@
-//! Remakes the textures that come with the studio, `sdk/bindings/studio/shelf/shelf.htexlib`.
+//! Remakes the textures that come with the studio and with each release,
+//! `sdk/bindings/studio/shelf/shelf.htexlib`.
 
 use anyhow::Result;
 

@@ -1,11 +1,13 @@
-//! Edits metadata by writing the asset again. Refuses an asset with parts that this version would
-//! not write again, such as entries that nothing refers to.
+//! Edits metadata and extensions by writing the asset again. Refuses an asset with parts that this
+//! version would not write again, such as entries that nothing refers to.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::settings::Metadata;
 use htex_author::{AuthorError, edit};
+use htex_base::files::AtFile;
+use serde_json::Value;
 
 use crate::assets::{check_metadata, read_asset, write_and_show};
 use crate::commands::validate::{refuse_library, refuse_more};
@@ -16,9 +18,9 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata
 ///
-/// The command changes only the metadata that you give. An empty text removes an entry, e.g.
-/// --author "". The flag --tag replaces all tags of the asset. Parameters, recorded spectra and
-/// embedded models with their signatures stay the same, byte for byte.
+/// The command changes only the metadata and extensions that you give. An empty text removes an
+/// entry, e.g. --author "". The flag --tag replaces all tags of the asset. Parameters, recorded
+/// spectra and embedded models with their signatures stay the same, byte for byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
@@ -36,6 +38,11 @@ pub(crate) struct Edit {
     #[command(flatten)]
     metadata: Metadata,
 
+    /// Set the extension with this name to the JSON in FILE. Without FILE, remove the extension. May
+    /// be given several times
+    #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
+    extension: Vec<String>,
+
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -45,11 +52,13 @@ impl Edit {
     pub(crate) fn run(mut self) -> Result {
         refuse_more("edit", &self.more)?;
         let metadata = std::mem::take(&mut self.metadata);
-        if metadata.is_empty() {
+        if metadata.is_empty() && self.extension.is_empty() {
             return Err(Failure::usage(
                 "nothing to change: give at least one of the metadata, such as --author",
             ));
         }
+        let extensions =
+            self.extension.iter().map(|given| named_file(given)).collect::<Result<Vec<_>>>()?;
         // Here, a remote asset is only a local copy. Replacing the copy would not change the remote
         // asset.
         if self.output.is_none() && located::is_copy(&self.asset) {
@@ -58,15 +67,36 @@ impl Edit {
                 "{file}: an asset elsewhere is not replaced; name another file to write by -o FILE"
             )));
         }
-        check_outputs(self.output.as_deref(), [self.asset.as_path()])?;
+        let files = extensions.iter().filter_map(|(_, file)| file.as_deref());
+        check_outputs(self.output.as_deref(), files.chain([self.asset.as_path()]))?;
         refuse_library(&self.asset)?;
         check_metadata(&metadata)?;
+        let extensions = extensions
+            .into_iter()
+            .map(|(name, file)| Ok((name, file.map_or(Ok(Value::Null), |file| json_of(&file))?)))
+            .collect::<Result<Vec<_>>>()?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let failure = |error| match error {
             AuthorError::ReadAsset(error) => Failure::from(error),
             lost => Failure::other(lost),
         };
-        let asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;
+        let mut asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;
+        asset.manifest.set_extensions(extensions);
         write_and_show(self.output.as_ref().unwrap_or(&self.asset), &asset, self.json)
     }
+}
+
+/// Reads `com.vendor.NAME/1=FILE`. Without the file, the extension is removed.
+fn named_file(argument: &str) -> Result<(String, Option<PathBuf>)> {
+    let named = argument.split_once('=');
+    let (name, file) = named.filter(|(name, _)| htex_format::is_extension_name(name)).ok_or_else(
+        || Failure::Usage(format!("--extension {argument}: it looks like com.vendor.NAME/1=FILE")),
+    )?;
+    Ok((name.to_owned(), Some(PathBuf::from(file)).filter(|_| !file.is_empty())))
+}
+
+fn json_of(file: &Path) -> Result<Value> {
+    let bytes = std::fs::read(file).reading(file)?;
+    htex_format::parse_json(&bytes)
+        .map_err(|error| Failure::Usage(format!("{}: {error}", shown(file))))
 }

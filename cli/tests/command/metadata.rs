@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
-use crate::common::Place;
+use crate::common::{Place, words};
 use serde_json::Value;
 use zip::write::SimpleFileOptions;
 
@@ -88,6 +88,65 @@ fn an_edit_changes_the_metadata_alone() {
         assert_eq!(before, after, "{name}");
         let valid = place.json(&["validate", "e.htex", "--json"]);
         assert_eq!(valid[0]["valid"], true, "{valid}");
+    }
+}
+
+/// An appearance is set, checked, kept by what changes or moves the asset, and removed.
+#[test]
+fn an_extension_is_set_kept_and_removed() {
+    let place = Place::new();
+    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/schemas/appearance-1.json");
+    let look = serde_json::json!({
+        "hue_deg": 28, "saturation": 0.5, "lightness": 0.4, "gloss": 0.2, "relief": 0.5, "pattern": "fibres"
+    });
+    place.write("look.json", look.to_string());
+    let make = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02"];
+    place.json(&[&make[..], &["--license", "CC0-1.0", "-o", "oak.htex", "--json"]].concat());
+    let appearance = "org.htex.appearance/1";
+    let set = format!("{appearance}=look.json");
+    let edited = place.json(&["edit", "oak.htex", "--extension", &set, "--json"]);
+    assert_eq!(edited["manifest"]["extensions"][appearance], look);
+    let of = |file: &str| {
+        place.json(&["info", file, "--json"])["manifest"]["extensions"][appearance].clone()
+    };
+    place.json(&["edit", "oak.htex", "--author", "A", "-o", "named.htex", "--json"]);
+    assert_eq!(of("named.htex"), look);
+    for command in [
+        "lib pack oak.htexlib oak.htex",
+        "lib unpack oak.htexlib --output unpacked",
+        "export oak.htex --to gltf -o oak.glb",
+        "import oak.glb -o imported.htex",
+    ] {
+        let run = place.run(&words(command));
+        assert_eq!(run.code(), 0, "{command}: {}", run.error());
+    }
+    assert_eq!(of("unpacked/oak.htex"), look);
+    assert_eq!(of("imported.htex"), look);
+    // A mixture is another surface, so it keeps neither tags nor extensions.
+    let mix = ["mix", "oak.htex", "named.htex", "--weight", "0.5", "-o", "mixed.htex", "--json"];
+    assert!(place.json(&mix)["manifest"]["extensions"].is_null());
+
+    let schema = format!("{appearance}={schema}");
+    let valid = place.json(&["validate", "oak.htex", "--extension-schema", &schema, "--json"]);
+    assert_eq!(valid[0]["valid"], true, "{valid}");
+    place.write("wrong.json", r#"{"hue_deg": 400}"#);
+    let wrong = format!("{appearance}=wrong.json");
+    place.json(&["edit", "oak.htex", "--extension", &wrong, "-o", "wrong.htex", "--json"]);
+    assert_eq!(place.run(&["validate", "wrong.htex"]).code(), 0);
+    assert_eq!(place.run(&["validate", "wrong.htex", "--extension-schema", &schema]).code(), 1);
+
+    let none = format!("{appearance}=");
+    let removed = place.json(&["edit", "oak.htex", "--extension", &none, "--json"]);
+    assert!(removed["manifest"]["extensions"].is_null());
+    for (argument, said) in [
+        ("LOOK=look.json", "com.vendor.NAME/1=FILE"),
+        ("com.example.LOOK/1", "com.vendor.NAME/1=FILE"),
+        ("com.example.LOOK/1=oak.htex", "oak.htex"),
+        ("com.example.LOOK/1=absent.json", "absent.json"),
+    ] {
+        let run = place.run(&["edit", "oak.htex", "--extension", argument]);
+        assert_ne!(run.code(), 0, "{argument}");
+        assert!(run.error().contains(said), "{argument}: {}", run.error());
     }
 }
 

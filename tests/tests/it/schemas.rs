@@ -240,6 +240,7 @@ fn generated_schemas_of_the_laboratory_are_fresh() {
         ("answers-1", htex_lab::study::answers_schema()),
         ("gains-1", htex_scene::gains_schema()),
         ("hatt-1", htex_exchange::hatt::extension_schema()),
+        ("appearance-1", htex_format::appearance_schema()),
         ("gltf-material-1", htex_exchange::gltf::material_schema()),
     ] {
         let text = format!("{schema:#}\n");

@@ -152,6 +152,10 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
     let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];
     htex(&[&edited[..], &["--contact", "tool", "-o", "edited.htex"]].concat())?;
+    let look = r#"{"hue_deg":28,"saturation":0.5,"lightness":0.4,"gloss":0.2,"relief":0.5,"pattern":"fibres"}"#;
+    fs_err::write(folder.join("look.json"), look)?;
+    let extension = "org.htex.appearance/1=look.json";
+    htex(&["edit", "hum.htex", "--extension", extension, "-o", "lit.htex"])?;
     let pack = ["lib", "pack", "two.htexlib", "--name", "Two", "--unlicensed"];
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }

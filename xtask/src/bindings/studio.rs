@@ -34,7 +34,7 @@ fn tests(folder: &Path, variables: &[(&str, &str)]) -> Result<()> {
         .args(["--test", "--test-concurrency=1"])
         .args(["page.test.mjs", "import.test.mjs", "opening.test.mjs", "history.test.mjs"])
         .args(["trust.test.mjs", "knobs.test.mjs", "windows.test.mjs", "slots.test.mjs"])
-        .args(["served.test.mjs", "firefox.test.mjs"])
+        .args(["look.test.mjs", "served.test.mjs", "firefox.test.mjs"])
         .envs(variables.iter().copied())
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)

@@ -1,4 +1,4 @@
-//! Makes the folder of an archive: the command, libhtex, the models as plugins, and texts.
+//! Makes the folder of an archive: the command, libhtex, the models as plugins, textures, and texts.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,10 +14,11 @@ use crate::plugins::models;
 use crate::programs::{output, run};
 
 /// Files of the workspace that every archive contains, and their paths in the archive.
-const TEXTS: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     ("LICENSE-MIT", "share/doc/htex/LICENSE-MIT"),
     ("LICENSE-APACHE", "share/doc/htex/LICENSE-APACHE"),
     ("CHANGELOG.md", "share/doc/htex/CHANGELOG.md"),
+    ("sdk/bindings/studio/shelf/shelf.htexlib", "share/htex/textures.htexlib"),
     ("xtask/src/release/README.md", "README.md"),
 ];
 
@@ -43,7 +44,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     command(build, &folder)?;
     dist(&Dist { prefix: folder.clone(), whole: true, build: build.clone() })?;
     plugins(build, &folder)?;
-    for (from, to) in TEXTS {
+    for (from, to) in FILES {
         copy(&workspace().join(from), &folder.join(to))?;
     }
     help(platform, &folder)?;

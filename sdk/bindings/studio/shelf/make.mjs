@@ -5,7 +5,7 @@
 // Simulated textures are recorded at four motions, and have four models; those made by hand have one. All are given away under CC0-1.0.
 
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 
@@ -15,7 +15,14 @@ const textures = path.join(folder, "textures");
 const run = (...words) => execFileSync(path.resolve(htex), words.map(String), { stdio: ["ignore", "ignore", "inherit"] });
 const { simulated, made } = JSON.parse(readFileSync(new URL("./textures.json", import.meta.url), "utf8"));
 const file = (name) => path.join(textures, `${name}.htex`);
-const metadata = ({ name, tags, description }) => ["--name", name, "--license", "CC0-1.0", "--tag", tags.join(","), "--description", description];
+
+/** Writes what a texture is: its name, licence, tags, description and appearance. `origin` says where its numbers come from. */
+function label({ name, tags, description, appearance }, tag, origin) {
+  const look = path.join(folder, "appearance.json");
+  writeFileSync(look, JSON.stringify(appearance));
+  const all = ["--name", name, "--license", "CC0-1.0", "--tag", [tag, ...tags].join(","), "--description", `${description} ${origin}`];
+  run("edit", file(name), ...all, "--extension", `org.htex.appearance/1=${look}`);
+}
 
 mkdirSync(textures);
 for (const one of simulated) {
@@ -27,13 +34,13 @@ for (const one of simulated) {
       recordings.push(recording);
     }
   }
-  run("fit", ...recordings, "-o", file(one.name), "--model", "bands,ar,sslope,sbeta", ...metadata(one));
+  run("fit", ...recordings, "-o", file(one.name), "--model", "bands,ar,sslope,sbeta");
+  label(one, "simulated", "A simulated finger slid over a simulated surface. This is not a measurement.");
 }
 for (const one of made) {
-  const description = "Made by hand, at 80 mm/s and 0.4 N; not a measurement.";
   const set = one.set.flatMap((text) => ["--set", text]);
-  const tags = ["by hand", ...one.tags];
-  run("make", "--model", one.model, ...set, "--level", one.level, "--at", "speed=80,force=0.4", "-o", file(one.name), ...metadata({ ...one, tags, description }));
+  run("make", "--model", one.model, ...set, "--level", one.level, "--at", "speed=80,force=0.4", "-o", file(one.name));
+  label(one, "by hand", "Made by hand, at 80 mm/s and 0.4 N. This is not a measurement.");
 }
 run("lib", "pack", path.resolve(out), textures, "--name", "Studio shelf");
 rmSync(folder, { recursive: true });

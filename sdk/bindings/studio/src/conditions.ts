@@ -18,7 +18,7 @@ interface Recorded {
 /** Lowest speed of a finger that slides, mm/s, and lowest force of a finger on a surface, N. */
 const [LEAST_MM_S, LEAST_N] = [0.5, 1e-6];
 /** The speed and the force that the command assumes if a texture does not state them. */
-const [USUAL_MM_S, USUAL_N] = [80, 0.4];
+export const USUAL: Slid = { speed: 80, force: 0.4 };
 
 const isKnown = (x: number | null): x is number => x !== null && !Number.isNaN(x);
 
@@ -67,5 +67,5 @@ export function recordedRange({ manifest, conditions }: Texture, model: string) 
 
 /** A motion at which a condition plays. It slides a little at least: nothing plays at rest. */
 export function sliding({ speed, force }: Recorded): Slid {
-  return { speed: Math.max(isKnown(speed) ? speed : USUAL_MM_S, LEAST_MM_S), force: Math.max(isKnown(force) ? force : USUAL_N, LEAST_N) };
+  return { speed: Math.max(isKnown(speed) ? speed : USUAL.speed, LEAST_MM_S), force: Math.max(isKnown(force) ? force : USUAL.force, LEAST_N) };
 }

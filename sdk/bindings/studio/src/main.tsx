@@ -4,6 +4,7 @@ import { render } from "preact";
 
 import "./styles/base.css";
 import "./styles/frame.css";
+import "./styles/lamp.css";
 import "./styles/controls.css";
 import "./styles/screens.css";
 import "./styles/shape.css";

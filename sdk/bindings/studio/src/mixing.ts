@@ -1,11 +1,14 @@
 // Four textures in the corners of a pad, and what is between them.
 
-import { computed, signal } from "@preact/signals";
+import { computed, signal, untracked } from "@preact/signals";
 import type { Author, Texture } from "htex";
 
 import { theAuthor } from "./author.ts";
 import { isSame } from "./bytes.ts";
 import { tried } from "./engine.ts";
+import type { Opened } from "./item.ts";
+import { EXTENSION, mixed as mixedLook } from "./look/appearance.ts";
+import { appearanceOf } from "./look/guess.ts";
 import { items } from "./shelf.ts";
 import { BANDS, redrawn } from "./shaping/bands.ts";
 import { make, read } from "./shaping/spec.ts";
@@ -50,16 +53,24 @@ export const parts = computed(() => {
   return [(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y];
 });
 
+/** The open texture of a corner; null until it is open. */
+function openedOf(id: string): Opened | null {
+  const item = items.value.find((one) => one.id === id);
+  if (item) return item.opened.value;
+  const [now, model] = [texture.value, present.value?.model];
+  return now && model ? { texture: now, model } : null;
+}
+
+export const openedCorners = computed(() => chosen.value.map(openedOf));
+
 /** Corners as Bands, by the item they are of: all textures have this model, so that all can be mixed. */
 const asBands = new Map<string, { of: unknown; texture: Texture }>();
 
 function bandsOf(author: Author, id: string): Texture | null {
-  const item = items.peek().find((one) => one.id === id);
-  const opened = item?.opened.peek();
-  const source = item ? opened?.texture : texture.peek();
-  const of = item ?? present.peek();
-  const model = item ? opened?.model : present.peek()?.model;
-  if (!source || !model) return null;
+  const opened = untracked(() => openedOf(id));
+  const of = items.peek().find((one) => one.id === id) ?? present.peek();
+  if (!opened) return null;
+  const { texture: source, model } = opened;
   const cached = asBands.get(id);
   if (cached?.of === of) return cached.texture;
   cached?.texture.free();
@@ -78,6 +89,7 @@ async function mixture(): Promise<Texture | null> {
   const wanted = new Set(chosen.peek());
   await Promise.all(items.peek().map((item) => wanted.has(item.id) && item.open()));
   const four = chosen.peek().map((id) => bandsOf(author, id));
+  const looks = openedCorners.peek().flatMap((one) => (one ? [appearanceOf(one.texture)] : []));
   const [a, b, c, d] = four;
   if (!a || !b || !c || !d) return null;
   const { x, y } = place.peek();
@@ -85,7 +97,8 @@ async function mixture(): Promise<Texture | null> {
   const [upper, lower] = [between(a, b, x), between(c, d, x)];
   const shares = parts.peek().map((part, i) => [part, four[i]?.name] as const).filter(([part]) => part > 0.005);
   const name = shares.map(([part, own]) => `${percent(part)} ${own}`).join(", ");
-  const mixed = author.mix(upper, lower, y, { name: name.length > 90 ? `Mixture of ${shares.length}` : name });
+  const extensions = { [EXTENSION]: mixedLook(looks, parts.peek()) };
+  const mixed = author.mix(upper, lower, y, { name: name.length > 90 ? `Mixture of ${shares.length}` : name, extensions });
   upper.free();
   lower.free();
   return mixed;

@@ -30,14 +30,14 @@ export const found = computed(() => {
   return items.value.filter((item) => has(item) && (!chosenTag.value || item.tags.includes(chosenTag.value)));
 });
 
-async function item(id: string, bytes: Uint8Array, isOwn: boolean, added = 0): Promise<Item> {
-  return shelved({ id, bytes, isOwn, added, ...(await factsOf(bytes)) });
+async function item(id: string, bytes: Uint8Array, added: number): Promise<Item> {
+  return shelved({ id, bytes, isOwn: true, added, ...(await factsOf(bytes)) });
 }
 
-/** The textures that come with the page. */
+/** The textures that come with the page. The library states their names and tags, so none is opened yet. */
 async function unpack(library: Library) {
   const unpacked: Item[] = [];
-  for await (const { name } of library.entries()) unpacked.push(await item(name, await library.bytes(name), false));
+  for await (const { name, tags } of library.entries()) unpacked.push(shelved({ id: name, name, tags, bytes: await library.bytes(name), isOwn: false, added: 0 }));
   library.free();
   return unpacked;
 }
@@ -82,7 +82,7 @@ async function compareOwn() {
 /** What was kept of a texture. One that an earlier version of the page kept is opened to be read. */
 async function kept({ id, name, tags: own, bytes, added }: Own): Promise<Item> {
   await breathe();
-  return own ? shelved({ id, name, tags: own, bytes, added, isOwn: true }) : item(id, bytes, true, added);
+  return own ? shelved({ id, name, tags: own, bytes, added, isOwn: true }) : item(id, bytes, added);
 }
 
 function ownOf({ id, name, tags: all, bytes, added }: Item): Own {
@@ -100,7 +100,7 @@ const newId = () => `own ${crypto.randomUUID()}`;
 
 /** Puts a texture on the shelf, and keeps it on this device if the browser does. */
 export async function add(bytes: Uint8Array): Promise<Item> {
-  const added = await item(newId(), bytes, true, Date.now());
+  const added = await item(newId(), bytes, Date.now());
   await keepAll([added]);
   return added;
 }
@@ -145,7 +145,7 @@ export async function addAll(sources: AsyncIterable<Source>, { step, signal: sto
     step(name);
     try {
       // The first is the newest.
-      batch.push(await item(newId(), await bytes(), true, began - (added.length + batch.length) / 1e3));
+      batch.push(await item(newId(), await bytes(), began - (added.length + batch.length) / 1e3));
     } catch (error) {
       problems.push({ name, error });
     }

@@ -126,7 +126,7 @@ test("the key swaps on each screen, and not in a field", async () => {
   await version(page, "B").click();
   await draw(page);
   let expected = "B";
-  for (const name of ["Shelf", "Shape", "Mix", "Vary", "Compare", "Record", "Give"]) {
+  for (const name of ["Shelf", "Shape", "Mix", "Vary", "Compare", "Record", "Save"]) {
     await goTo(page, name);
     await page.keyboard.press(name === "Mix" ? "Shift+X" : "x");
     expected = expected === "B" ? "A" : "B";
@@ -571,7 +571,7 @@ function decoded(page, png, frame = 0) {
 const code = (page) => page.getByRole("img", { name: /^QR code of the link to / });
 
 async function showCode(page) {
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   await page.getByRole("button", { name: "Show the code" }).click();
 }
 
@@ -635,7 +635,7 @@ test("a page that a phone cannot open asks for another address, which stays", as
   for (const [address, why] of [[FILE, /file on this device/], [server.address, /at 127\.0\.0\.1:\d+, an address that exists only on this device/], [server.address.replace("127.0.0.1", "localhost"), /at localhost:\d+, an address/], [server.address.replace("127.0.0.1", "abc123.localhost"), /at abc123\.localhost:\d+, an address/]]) {
     const page = await openStudio(browser, address);
     await load(page, "Oak");
-    await goTo(page, "Give");
+    await goTo(page, "Save");
     await page.getByText(why).waitFor();
     const show = page.getByRole("button", { name: "Show the code" });
     assert.ok(await show.isDisabled());
@@ -666,13 +666,13 @@ test("a page that a phone cannot open asks for another address, which stays", as
     await empty.context().close();
     await page.reload();
     await ready(page);
-    await goTo(page, "Give");
+    await goTo(page, "Save");
     assert.equal(await page.getByLabel("The studio's address for the phone").inputValue(), remote);
     await closed(page);
   }
   // An address that a phone can open needs no other.
   const page = await openStudio(browser, remote);
-  await goTo(page, "Give");
+  await goTo(page, "Save");
   assert.equal(await page.getByLabel("The studio's address for the phone").count(), 0);
   await closed(page);
 });

@@ -103,6 +103,15 @@ export interface Metadata {
   law?: { frequency_speed?: number; level_speed?: number; level_force?: number };
 }
 
+/** Metadata and extensions of a texture. */
+export interface MetadataAndExtensions extends Metadata {
+  /**
+   * Extensions: data that players do not need, by names of the form "com.vendor.NAME/1". The texture
+   * keeps its other extensions, and null removes one. `spec/htex-1.md` lists those of this project.
+   */
+  extensions?: Record<string, unknown>;
+}
+
 /** The parameters of a model at one condition. */
 export interface MadeAt {
   /** Speed (mm/s) and force (N). Give both for every condition, or neither for any. */
@@ -113,7 +122,7 @@ export interface MadeAt {
   parameters: Record<string, number | number[]>;
 }
 
-export interface MakeOptions extends Metadata {
+export interface MakeOptions extends MetadataAndExtensions {
   representations: { model: string; conditions: MadeAt[] }[];
   /** Default "lateral_force". */
   quantity?: RecordedQuantity;
@@ -373,9 +382,12 @@ export interface Author {
   /** Makes a texture from parameters. The texture states that it was made by hand. */
   make(options: MakeOptions): Texture;
   /** Makes a texture between `a` and `b`. `weight` is the share of `b`, 0 to 1. */
-  mix(a: Texture | Bytes, b: Texture | Bytes, weight: number, metadata?: Metadata): Texture;
-  /** Returns the texture with other metadata. An empty text removes an entry. */
-  edit(texture: Texture | Bytes, metadata: Metadata): Texture;
+  mix(a: Texture | Bytes, b: Texture | Bytes, weight: number, metadata?: MetadataAndExtensions): Texture;
+  /**
+   * Returns the texture with other metadata or other extensions. An empty text removes an entry of
+   * the metadata.
+   */
+  edit(texture: Texture | Bytes, metadata: MetadataAndExtensions): Texture;
   /**
    * Checks a file. Recognises libraries and textures by their bytes, and recordings by their
    * `name`.

@@ -87,8 +87,8 @@ export class Author {
   }
 
   /** Makes a texture from parameters. */
-  make({ representations, quantity, band, unit, ...metadata }) {
-    const { bytes } = this.core.call("make", { representations, quantity, band, metadata });
+  make({ representations, quantity, band, unit, extensions, ...metadata }) {
+    const { bytes } = this.core.call("make", { representations, quantity, band, metadata, extensions });
     const texture = this.texture(bytes);
     if (unit !== undefined && unit !== texture.unit) {
       texture.free();
@@ -98,13 +98,13 @@ export class Author {
   }
 
   /** Makes a texture between two others. `weight` is the share of the second. */
-  mix(a, b, weight, metadata = {}) {
-    return this.texture(this.core.call("mix", { weight, metadata }, [a, b].map(bytesOfTexture)).bytes);
+  mix(a, b, weight, { extensions, ...metadata } = {}) {
+    return this.texture(this.core.call("mix", { weight, metadata, extensions }, [a, b].map(bytesOfTexture)).bytes);
   }
 
-  /** Returns the texture with other metadata. */
-  edit(texture, metadata) {
-    return this.texture(this.core.call("edit", { metadata }, [bytesOfTexture(texture)]).bytes);
+  /** Returns the texture with other metadata or other extensions. */
+  edit(texture, { extensions, ...metadata }) {
+    return this.texture(this.core.call("edit", { metadata, extensions }, [bytesOfTexture(texture)]).bytes);
   }
 
   /** Checks a texture, a library or a recording. A recording is recognised by its `name`. */

@@ -244,6 +244,26 @@ test("textures are mixed and edited as by the command", async () => {
   assert.throws(() => author.mix(a, b, 2), { code: "invalid-argument" });
 });
 
+test("extensions are written, kept and removed", async () => {
+  const [look, other] = ["org.htex.appearance/1", "com.example.NOTE/2"];
+  const wood = { hue_deg: 28, saturation: 0.5, lightness: 0.4, gloss: 0.2, relief: 0.5, pattern: "fibres" };
+  const of = ({ manifest }) => manifest.extensions;
+  const made = author.make({ name: "oak", extensions: { [look]: wood, [other]: [1, null] }, representations: [{ model: "sbeta", conditions: [{ level: 0.1, parameters: { alpha: 2, beta: 3 } }] }] });
+  assert.deepEqual(of(made), { [look]: wood, [other]: [1, null] });
+  assert.deepEqual(of(author.edit(made, { tags: ["wood"] })), of(made));
+  const edited = author.edit(made, { extensions: { [look]: { ...wood, hue_deg: 30 }, [other]: null } });
+  assert.deepEqual(of(edited), { [look]: { ...wood, hue_deg: 30 } });
+  assert.deepEqual(author.edit(author.edit(edited, { extensions: { [look]: wood } }), { extensions: { [other]: [1, null] } }).bytes, made.bytes);
+  assert.equal(of(author.edit(edited, { extensions: { [look]: null } })), undefined);
+  assert.equal(of(author.mix(made, made, 0.5)), undefined);
+  assert.deepEqual(of(author.mix(made, made, 0.5, { name: "both", extensions: { [look]: wood } })), { [look]: wood });
+  assert.ok(author.validate(edited.bytes).valid);
+  // It is the same file as the command's.
+  await isFile(author.edit(await open(await bytes("hum.htex")), { extensions: { [look]: wood } }), "lit.htex");
+  assert.throws(() => author.edit(made, { extensions: { LOOK: 1 } }), { name: "HtexError", message: /com\.vendor\.NAME/ });
+  assert.throws(() => author.edit(made, { extensions: [] }), { code: "invalid-argument", message: /extensions/ });
+});
+
 test("a difference is felt by its level, and not at all below the threshold", () => {
   const made = (level) => author.make({ name: "noise", representations: [{ model: "sbeta", conditions: [{ level, parameters: { alpha: 2, beta: 3 } }] }] });
   const [one, same, twice, faint, fainter] = [0.1, 0.1, 0.2, 1e-8, 1e-9].map((level) => ({ texture: made(level) }));

@@ -98,7 +98,7 @@ export async function make(file: File, signal: AbortSignal): Promise<Uint8Array>
   const [slider] = author.models()[0]!.fields.map(({ usual, min }) => usual?.min ?? min);
   const parameters = { below_highest: [0, 10], step_db: 1, layout: slider ?? 1 };
   const made: Texture = author.make({ name: "made", representations: [{ model: "bands", conditions: [{ speed: 80, force: 0.5, parameters }] }] });
-  const mixed: Texture = author.edit(author.mix(texture, made, 0.5), { author: "A. Weaver" });
+  const mixed: Texture = author.edit(author.mix(texture, made, 0.5, { extensions: { "com.example.NOTE/1": [1] } }), { author: "A. Weaver", extensions: { "com.example.NOTE/1": null } });
   const { columns, picture, findings } = author.process({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { map: "lateral=#2" });
   console.log(report.ranked[0], columns.problem, picture.signals["signal"]?.least[0], author.explain(findings[0]!.code)?.fix);
   // @ts-expect-error: a setting of no table.

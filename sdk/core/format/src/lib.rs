@@ -16,6 +16,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
+mod appearance;
 mod archive;
 mod asset;
 mod block;
@@ -59,6 +60,7 @@ mod zip_records;
 #[cfg(feature = "write")]
 mod zip_writer;
 
+pub use appearance::{APPEARANCE, Appearance, Pattern};
 pub use asset::Asset;
 pub use block::{round_parameters, round_within, stored_bytes};
 pub use check_manifest::is_extension_name;
@@ -79,7 +81,7 @@ pub use manifest::{
     Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
 };
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
-pub use page::{manifest_schema, report_schema, validation_page};
+pub use page::{appearance_schema, manifest_schema, report_schema, validation_page};
 pub use quality::{KeyedMeasures, LeftOut, Measures, Quality};
 pub use quantity::{Quantity, UnknownName};
 pub use rights::{Rights, license_file, read_license_file};

@@ -117,6 +117,17 @@ impl Manifest {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
     }
+
+    /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.
+    pub fn set_extensions(&mut self, given: impl IntoIterator<Item = (String, Value)>) {
+        for (name, value) in given {
+            if value.is_null() {
+                self.extensions.remove(&name);
+            } else {
+                self.extensions.insert(name, value);
+            }
+        }
+    }
 }
 
 /// A frequency band. The band includes both edges.

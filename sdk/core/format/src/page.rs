@@ -1,9 +1,9 @@
-//! Generator of `spec/validation.md` and `spec/schemas/manifest-1.json`.
+//! Generator of `spec/validation.md` and of the schemas of `spec/schemas` that this crate defines.
 
 use htex_base::finding::{FileReport, rules_page};
 use serde_json::Value;
 
-use crate::{Manifest, RULES, STAGES, rules_of};
+use crate::{Appearance, Manifest, RULES, STAGES, rules_of};
 
 const HEAD: &str = "\
 # Findings of validation
@@ -45,4 +45,11 @@ pub fn report_schema() -> Value {
         "report-1.json",
         "report of validation of an htex file",
     )
+}
+
+/// Generates the JSON Schema of the extension `org.htex.appearance/1`:
+/// `spec/schemas/appearance-1.json`.
+pub fn appearance_schema() -> Value {
+    let title = "extension org.htex.appearance/1 of htex assets";
+    htex_base::schema::document::<Appearance>("appearance-1.json", title)
 }

@@ -1,20 +1,37 @@
-// Paints the pad: the grain, which moves with the finger, and the finger. It paints when something has changed, and not else.
+// Paints the pad: the lit relief, which moves with the finger, the spectrum as a line in the corner, and the finger. It paints when
+// something has changed, and not else.
 
 import { effect, type ReadonlySignal } from "@preact/signals";
 import type { Texture } from "htex";
 
 import { near } from "../conditions.ts";
+import type { Appearance } from "../look/appearance.ts";
 import { ghost } from "../ghost.ts";
+import { appearanceOf } from "../look/guess.ts";
+import { LitTile } from "../look/lit-tile.ts";
+import { fineSpectrum, outline, paintLine } from "../look/spectrum-line.ts";
+import { surface, type Surface } from "../look/surface.ts";
 import { finger, sliders } from "../motion.ts";
-import { isCalm, scheme } from "../theme.ts";
-import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
+import { colour, isCalm, scheme } from "../theme.ts";
+import { lamp } from "./lamp.tsx";
 
-/** Milliseconds between two reliefs while a texture is edited. */
-const RELIEF_MS = 120;
+/** Milliseconds between two reliefs while a spectrum is edited, and between two lights while only the appearance is. */
+const [RELIEF_MS, LIGHT_MS] = [120, 16];
 /** Milliseconds between two pieces of one. */
 const PIECE_MS = 4;
-/** Part of the finger's way by which the grain moves. */
+/** Part of the finger's way by which the relief moves. */
 const CARRIED = 0.3;
+const SIZE = [256, 256] as const;
+
+/** What is on the pad. */
+interface Shown {
+  readonly magnitudes: Float64Array;
+  readonly appearance: Appearance;
+  readonly relief: Surface;
+  readonly line: Path2D;
+}
+
+const isEqual = (a: Float64Array, b: Float64Array) => a.every((magnitude, i) => magnitude === b[i]);
 
 /** Part of a finger's colour that a ghost has. */
 const GHOST = 0.45;
@@ -28,11 +45,15 @@ export interface Look {
 }
 
 export class PadPainter {
-  private tile: HTMLCanvasElement | null = null;
+  private readonly tile = new LitTile();
+  private shown: Shown | null = null;
+  private pause = 0;
+  /** Whether the lamp, the pad or the texture has changed since the relief was lit. */
+  private isUnlit = false;
   private frame = 0;
   private timer = 0;
   /** The relief that is being drawn. */
-  private drawing: Generator<void, HTMLCanvasElement> | null = null;
+  private drawing: Generator<void, Surface> | null = null;
   /** Whether the texture has changed since the drawing began. */
   private isStale = false;
   private offset = { x: 0, y: 0 };
@@ -48,15 +69,18 @@ export class PadPainter {
     this.ends = [
       effect(() => {
         void look.pictured.value;
-        void scheme.value;
         // During a blind test there is no texture to show: the pad is bare at once.
         if (!look.sounding.value) return this.wish();
-        if (!this.drawing) this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
+        if (!this.drawing) this.timer ||= window.setTimeout(() => this.renew(), this.pause);
         else this.isStale = true;
       }),
       effect(() => {
-        void [finger.value, ghost.value];
+        void [finger.value, ghost.value, scheme.value];
         this.wish();
+      }),
+      effect(() => {
+        void lamp.value;
+        this.relight();
       }),
       () => observer.disconnect(),
     ];
@@ -74,6 +98,7 @@ export class PadPainter {
     const scale = Math.min(devicePixelRatio, 2);
     this.canvas.width = Math.max(Math.round(clientWidth * scale), 1);
     this.canvas.height = Math.max(Math.round(clientHeight * scale), 1);
+    this.isUnlit = true;
     // A canvas of another size is empty, and is shown before the next frame.
     cancelAnimationFrame(this.frame);
     this.paint();
@@ -84,25 +109,40 @@ export class PadPainter {
     const now = this.look.sounding.peek();
     if (!now) return;
     const { at } = near(now.texture, now.model, sliders.peek());
-    const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model, at });
-    this.drawing = relief(magnitude, colour("--grain-dark"), colour("--grain-light"));
-    this.draw(this.drawing);
+    const magnitudes = fineSpectrum(now.texture, now.model, at);
+    const appearance = appearanceOf(now.texture);
+    const line = new Path2D(outline(magnitudes));
+    const { shown } = this;
+    if (shown && shown.appearance.pattern === appearance.pattern && isEqual(shown.magnitudes, magnitudes)) return this.show({ ...shown, appearance }, LIGHT_MS);
+    const drawing = surface(magnitudes, appearance.pattern, SIZE);
+    this.drawing = drawing;
+    this.draw(drawing, (relief) => this.show({ magnitudes, appearance, relief, line }, RELIEF_MS));
   }
 
   /** Goes on with the relief: the first one at once, others in pieces between frames. */
-  private draw(drawing: Generator<void, HTMLCanvasElement>) {
+  private draw(drawing: Generator<void, Surface>, show: (relief: Surface) => void) {
     if (drawing !== this.drawing) return;
     for (;;) {
       const { done, value } = drawing.next();
       if (done) {
-        this.tile = value;
         this.drawing = null;
         if (this.isStale) this.timer ||= window.setTimeout(() => this.renew(), RELIEF_MS);
         this.isStale = false;
-        return this.wish();
+        return show(value);
       }
-      if (this.tile) return void setTimeout(() => this.draw(drawing), PIECE_MS);
+      if (this.shown) return void setTimeout(() => this.draw(drawing, show), PIECE_MS);
     }
+  }
+
+  private show(shown: Shown, pause: number) {
+    this.shown = shown;
+    this.pause = pause;
+    this.relight();
+  }
+
+  private relight() {
+    this.isUnlit = true;
+    this.wish();
   }
 
   private wish() {
@@ -120,14 +160,22 @@ export class PadPainter {
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
     const scale = Math.min(devicePixelRatio, 2);
-    if (this.tile && this.look.sounding.peek()) this.grain(pen, width, height, scale);
+    if (this.shown && this.look.sounding.peek()) this.material(pen, this.shown, width, height, scale);
     if (force === 0) return;
     pen.globalAlpha = isGhost ? GHOST : 1;
     this.touch(pen, x * width, y * height, scale, force, speed);
     pen.globalAlpha = 1;
   }
 
-  /** Moves the grain with the finger; a finger that comes in on the other side has not moved back. */
+  private material(pen: CanvasRenderingContext2D, { relief, appearance, line }: Shown, width: number, height: number, scale: number) {
+    if (this.isUnlit) this.tile.light(relief, appearance, lamp.peek(), width / height);
+    this.isUnlit = false;
+    this.tile.fill(pen, width, height, scale, this.offset);
+    const [r, g, b] = colour("--panel");
+    paintLine(pen, line, scale, `rgba(${r}, ${g}, ${b}, 0.8)`, `rgb(${colour("--ink").join()})`);
+  }
+
+  /** Moves the relief with the finger; a finger that comes in on the other side has not moved back. */
   private carry(x: number, y: number, width: number, height: number, isDown: boolean) {
     const way = (now: number, before: number) => (Math.abs(now - before) > 0.5 ? 0 : now - before);
     if (isDown && !isCalm.matches) {
@@ -135,18 +183,6 @@ export class PadPainter {
       this.offset.y += CARRIED * height * way(y, this.before.y);
     }
     this.before = { x, y };
-  }
-
-  private grain(pen: CanvasRenderingContext2D, width: number, height: number, scale: number) {
-    const pattern = this.tile && pen.createPattern(this.tile, "repeat");
-    if (!pattern) return;
-    const size = TILE * scale;
-    pen.save();
-    pen.translate((this.offset.x % size) - size, (this.offset.y % size) - size);
-    pen.scale(scale, scale);
-    pen.fillStyle = pattern;
-    pen.fillRect(0, 0, width / scale + 2 * TILE, height / scale + 2 * TILE);
-    pen.restore();
   }
 
   private touch(pen: CanvasRenderingContext2D, x: number, y: number, scale: number, force: number, speed: number) {

@@ -10,6 +10,7 @@ import { coverage, pictured, sounding } from "../shadow.ts";
 import { isTouch } from "../theme.ts";
 import { FirstWords } from "./first-words.tsx";
 import { followHand, followKey } from "./pad-hand.ts";
+import { LampHandle } from "./lamp.tsx";
 import { PadPainter } from "./pad-painter.ts";
 
 export function Pad() {
@@ -42,6 +43,7 @@ export function Pad() {
         Arrows slide, Shift faster · 1–5 press · Space slides back and forth
       </p>
       <FirstWords />
+      {!isBlind.value && <LampHandle />}
     </div>
   );
 }

@@ -12,11 +12,11 @@ import { isBlind } from "../comparing.ts";
 import { near } from "../conditions.ts";
 import { tried, type Sounding } from "../engine.ts";
 import { documents, type Document } from "../history.ts";
+import { LINE_HEIGHT, LINE_WIDTH, fineSpectrum, outline } from "../look/spectrum-line.ts";
 import { sliders } from "../motion.ts";
 import { whenFree } from "../slices.ts";
 import { fail, history, visit } from "../state.ts";
 import { Icon } from "./icons.tsx";
-import { Outline, outline } from "./sparkline.tsx";
 
 /** Steps that are shown. */
 const SHOWN = 12;
@@ -88,7 +88,7 @@ function useOutline(document: Document) {
     const { texture, model } = await opened(document);
     try {
       isOfOne.current = texture.conditions.length < 2;
-      setPath(outline(texture, model, near(texture, model, at).at));
+      setPath(outline(fineSpectrum(texture, model, near(texture, model, at).at)));
     } finally {
       texture.free();
     }
@@ -127,7 +127,9 @@ function Step({ document, index, present }: { document: Document; index: number;
         {...looks}
         onClick={() => take(document).catch(fail)}
       >
-        <Outline path={path} />
+        <svg class="step-outline" viewBox={`0 0 ${LINE_WIDTH} ${LINE_HEIGHT}`} preserveAspectRatio="none" aria-hidden="true">
+          <path d={path} />
+        </svg>
         <span class="step-change">{document.change}</span>
       </button>
     </li>

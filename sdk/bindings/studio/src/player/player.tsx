@@ -9,6 +9,7 @@ import "../styles/base.css";
 import "../styles/frame.css";
 import "../styles/controls.css";
 import "../styles/knobs.css";
+import "../styles/lamp.css";
 import "../styles/windows.css";
 import "./player.css";
 import { near, recordedRange } from "../conditions.ts";
@@ -16,6 +17,7 @@ import { coverageText } from "../coverage-text.ts";
 import { slideGhost } from "../ghost.ts";
 import { toLink } from "../link.ts";
 import { byKey, finger, isPiloted, pilot, pilotForce, pilotSpeed, releaseKeys, rest, setPilot, sliders } from "../motion.ts";
+import { LampHandle } from "../parts/lamp.tsx";
 import { Name } from "../parts/name.tsx";
 import { followHand, followKey } from "../parts/pad-hand.ts";
 import { PadPainter } from "../parts/pad-painter.ts";
@@ -84,6 +86,7 @@ function Pad({ texture, model }: { texture: Texture; model: string }) {
           Arrows slide, Shift faster · 1–5 press · Space slides back and forth
         </p>
         {!isAwake.value && <p class="pad-hint">Press and slide</p>}
+        <LampHandle />
       </div>
       <p class={isOutside ? "coverage outside" : "coverage"} role="status">
         {failure.value ?? coverageText(told)}

@@ -2,6 +2,7 @@
 
 import { theAuthor, author } from "../author.ts";
 import { complete, copyLink, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, write, type Label } from "../giving.ts";
+import { Appearance } from "../parts/appearance.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { Qr } from "../parts/qr.tsx";
 import { TextField } from "../parts/text-field.tsx";
@@ -30,7 +31,7 @@ function LabelForm() {
       <TextField label="Tags, with commas" value={tags} {...field("tags")} />
       <TextField label="Description" rows={2} value={description} {...field("description")} />
       <TextField label="Author" value={by} {...field("author")} />
-      {/* The place of <Appearance />. */}
+      <Appearance />
     </div>
   );
 }

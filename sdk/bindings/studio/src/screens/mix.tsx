@@ -3,6 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 
 import { isolated } from "../names.ts";
+import { MixPicture } from "../parts/mix-picture.tsx";
 import { Slider } from "../parts/slider.tsx";
 import { chosen, corners, endListening, listen, onPad, parts, place, takeMixture } from "../mixing.ts";
 import { items } from "../shelf.ts";
@@ -62,6 +63,7 @@ function Square() {
       onPointerUp={() => (isHeld.current = false)}
       onPointerCancel={() => (isHeld.current = false)}
     >
+      <MixPicture />
       <span class="mix-knob" style={{ left: `${100 * x}%`, top: `${100 * y}%` }} />
     </div>
   );

@@ -8,7 +8,7 @@ import { OPENED, take } from "../drop.ts";
 import { isolated } from "../names.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Name } from "../parts/name.tsx";
-import { NoSparkline, Sparkline } from "../parts/sparkline.tsx";
+import { NoPicture, Picture } from "../parts/picture.tsx";
 import { chosenTag, forget, found, items, search, tags, type Item } from "../shelf.ts";
 import { begin, fail, present, say, screen } from "../state.ts";
 import { isTouch } from "../theme.ts";
@@ -41,7 +41,7 @@ function Card({ item }: { item: Item }) {
   return (
     <li>
       <button class={isHere ? "card here" : "card"} aria-pressed={isHere} {...looks} onClick={() => choose(item).catch(fail)} onDblClick={() => (screen.value = "shape")}>
-        {opened ? <Sparkline {...opened} /> : <NoSparkline />}
+        {opened ? <Picture {...opened} /> : <NoPicture />}
         <span class="card-name">
           <Name>{item.name}</Name>
         </span>

@@ -5,8 +5,8 @@ import { useEffect } from "preact/hooks";
 import { endAudition, onLook } from "../audition.ts";
 import { KeepsOne } from "../parts/keeps-one.tsx";
 import { Name } from "../parts/name.tsx";
+import { Picture } from "../parts/picture.tsx";
 import { Slider } from "../parts/slider.tsx";
-import { Sparkline } from "../parts/sparkline.tsx";
 import { fail, present, say } from "../state.ts";
 import { isTouch } from "../theme.ts";
 import { again, keepVarying, reach, takeVariation, variations, type Variation } from "../varying.ts";
@@ -22,7 +22,7 @@ function Card({ variation, index }: { variation: Variation; index: number }) {
   return (
     <li>
       <button class="card" aria-label={`Variation ${index + 1}: ${text}`} {...onLook(() => ({ texture, model }))} onClick={() => take(variation).catch(fail)}>
-        <Sparkline texture={texture} model={model} />
+        <Picture texture={texture} model={model} />
         <span class="card-name">{text}</span>
       </button>
     </li>

@@ -3,6 +3,7 @@
 import type { Author, MakeOptions, Metadata, Texture } from "htex";
 
 import { sliding } from "../conditions.ts";
+import { keptAppearance } from "../look/appearance.ts";
 
 export type Parameters = Readonly<Record<string, number | readonly number[]>>;
 
@@ -38,7 +39,7 @@ export function read(texture: Texture, model: string): Spec {
 }
 
 export interface Frame {
-  /** The texture that is changed: its name, quantity, law, contact and metadata stay. */
+  /** The texture that is changed: its name, quantity, law, contact, metadata and appearance stay. */
   readonly from: Texture;
   /** The specification of that texture, whose spectra need not be made. */
   readonly of?: Spec;
@@ -71,6 +72,7 @@ export function make(author: Author, { from }: Frame, spec: Spec): Texture {
       level_force: law.level_force.exponent,
     },
     ...metadataOf(manifest),
+    ...keptAppearance(manifest),
     representations: [{ model: spec.model, conditions }],
   });
 }

@@ -59,6 +59,16 @@ impl Document {
         Self::from_value(self.remove(name).unwrap_or_default())
     }
 
+    /// Takes an object as it is, with its `null` entries. If it is absent, it is empty.
+    #[cfg(feature = "make")]
+    pub(crate) fn map(&mut self, name: &'static str) -> Result<Map<String, Value>, Refusal> {
+        match self.remove(name) {
+            None => Ok(Map::new()),
+            Some(Value::Object(all)) => Ok(all),
+            Some(_) => Err(wrong(name, "an object")),
+        }
+    }
+
     /// Takes a list. If it is absent, the list is empty.
     pub(crate) fn list(&mut self, name: &'static str) -> Result<Vec<Value>, Refusal> {
         match self.remove(name) {

@@ -1,5 +1,5 @@
 //! Makes textures without recordings: from parameters, between two other textures, or with other
-//! metadata.
+//! metadata and extensions.
 
 use std::collections::BTreeMap;
 
@@ -38,6 +38,7 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     let quantity = quantity(call.text("quantity")?)?;
     let band = band(&call.list("band")?)?;
     let metadata = metadata(call.object("metadata")?)?;
+    let extensions = call.map("extensions")?;
     call.finish()?;
     let name = metadata.name.clone();
     let mut asset = by_hand::make_all(&ByHandModels {
@@ -48,6 +49,7 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
         tool: TOOL.to_owned(),
     })?;
     metadata.apply(&mut asset.manifest);
+    asset.manifest.set_extensions(extensions);
     answer(&asset)
 }
 
@@ -113,6 +115,7 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let weight = call.number("weight")?;
     let weight = weight.ok_or_else(|| Refusal::argument("give a weight from 0 to 1"))?;
     let metadata = metadata(call.object("metadata")?)?;
+    let extensions = call.map("extensions")?;
     call.finish()?;
     let [a, b] = files else {
         return Err(Refusal::argument("give two textures"));
@@ -128,6 +131,7 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     );
     let mut asset = mixed?;
     metadata.apply(&mut asset.manifest);
+    asset.manifest.set_extensions(extensions);
     answer(&asset)
 }
 
@@ -137,17 +141,20 @@ fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
     Ok((asset, blake3::hash(bytes).to_hex().to_string()))
 }
 
-/// Changes the metadata of a texture, which is the only file. The bytes of the answer are the
-/// asset.
+/// Changes the metadata and extensions of a texture, which is the only file. The bytes of the answer
+/// are the asset.
 pub(crate) fn edit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let metadata = metadata(call.object("metadata")?)?;
+    let extensions = call.map("extensions")?;
     call.finish()?;
-    if metadata.is_empty() {
+    if metadata.is_empty() && extensions.is_empty() {
         let sentence = "nothing to change: give at least one of the metadata, such as author";
         return Err(Refusal::argument(sentence));
     }
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    answer(&htex_author::edit(bytes, &metadata)?)
+    let mut asset = htex_author::edit(bytes, &metadata)?;
+    asset.manifest.set_extensions(extensions);
+    answer(&asset)
 }

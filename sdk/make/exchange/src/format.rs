@@ -4,10 +4,8 @@
 use serde::Serialize;
 
 use crate::error::{ExchangeError, Fault, in_file};
-#[cfg(feature = "export")]
 use crate::export::Export;
 use crate::import::ImportedAsset;
-#[cfg(feature = "export")]
 use crate::job::{Job, WrittenSignal};
 use crate::profile::Profile;
 use crate::rights::RightsPlace;
@@ -28,7 +26,6 @@ pub struct Format {
     /// How files are imported; `None` if the format cannot be imported.
     pub reads: Option<Reads>,
     /// How assets are exported; `None` if the format cannot be exported.
-    #[cfg(feature = "export")]
     pub writes: Option<Writes>,
     /// Where the format's files store the licence and the author.
     pub rights: RightsPlace,
@@ -63,7 +60,6 @@ pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
 type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 
 /// How assets are exported to a format.
-#[cfg(feature = "export")]
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
     /// The file stores the vibration that the asset plays at a motion, reduced to what an actuator
@@ -82,9 +78,7 @@ pub enum Writes {
 }
 
 /// The function that writes a played vibration as a file of a format.
-#[cfg(feature = "export")]
 pub type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
-#[cfg(feature = "export")]
 type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 
 /// How a file is sampled when it is read as a signal.
@@ -120,14 +114,11 @@ const FITTED: &[&str] =
 /// Settings of image imports.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 /// Settings of image exports.
-#[cfg(feature = "export")]
 const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports that store what an asset plays.
-#[cfg(feature = "export")]
 const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profile", "seed"];
 
 /// Those of these settings that a scene determines when a scene is exported.
-#[cfg(feature = "export")]
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
@@ -150,7 +141,6 @@ impl Reads {
     }
 }
 
-#[cfg(feature = "export")]
 impl Writes {
     /// Returns the keywords of the settings that the export accepts.
     #[must_use]
@@ -195,7 +185,6 @@ impl Format {
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
-    #[cfg(feature = "export")]
     pub fn check_export<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,
@@ -209,7 +198,6 @@ impl Format {
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
-    #[cfg(feature = "export")]
     pub fn check_export_of_scene<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,
@@ -290,21 +278,14 @@ struct FormatDescription<'a> {
 
 impl Serialize for Format {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[cfg(feature = "export")]
-        let (export, export_settings) = (
-            self.writes.as_ref().map(Writes::kind),
-            self.writes.as_ref().map(Writes::settings).unwrap_or_default(),
-        );
-        #[cfg(not(feature = "export"))]
-        let (export, export_settings) = (None, Vec::new());
         let description = FormatDescription {
             name: self.name,
             title: self.title,
             extensions: self.extensions,
             import: self.reads.as_ref().map(Reads::kind),
             import_settings: self.reads.as_ref().map(Reads::settings).unwrap_or_default(),
-            export,
-            export_settings,
+            export: self.writes.as_ref().map(Writes::kind),
+            export_settings: self.writes.as_ref().map(Writes::settings).unwrap_or_default(),
             rights: self.rights.place,
             keeps: self.keeps,
             loses: self.loses,

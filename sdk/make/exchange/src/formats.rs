@@ -1,10 +1,8 @@
 //! The table of all formats. Commands, help texts, messages and documents use this table.
 
 use crate::error::{ExchangeError, list};
-use crate::format::{Format, Reads};
-use crate::{ahap, gltf, haptic, hatt, hjif, rights};
-#[cfg(feature = "export")]
-use crate::{format::Writes, writers};
+use crate::format::{Format, Reads, Writes};
+use crate::{ahap, gltf, haptic, hatt, hjif, rights, writers};
 
 /// All formats.
 pub const FORMATS: &[Format] = &[
@@ -13,7 +11,6 @@ pub const FORMATS: &[Format] = &[
         title: "Penn Haptic Texture Toolkit, XML",
         extensions: &["xml"],
         reads: Some(Reads::Asset(hatt::import)),
-        #[cfg(feature = "export")]
         writes: None,
         rights: rights::BESIDE,
         keeps: "the filter of each node, speed and force, the unit, triangles, friction",
@@ -24,7 +21,6 @@ pub const FORMATS: &[Format] = &[
         title: "Meta .haptic, version 1",
         extensions: &["haptic"],
         reads: Some(Reads::Positions { read: haptic::signal, profile: "quest" }),
-        #[cfg(feature = "export")]
         writes: Some(Writes::Signal { write: writers::haptic, profile: "quest", settings: &[] }),
         rights: rights::HAPTIC,
         keeps: "level and one frequency over time",
@@ -35,7 +31,6 @@ pub const FORMATS: &[Format] = &[
         title: "Apple .ahap, version 1",
         extensions: &["ahap"],
         reads: Some(Reads::Positions { read: ahap::signal, profile: "iphone" }),
-        #[cfg(feature = "export")]
         writes: Some(Writes::Signal { write: writers::ahap, profile: "iphone", settings: &[] }),
         rights: rights::AHAP,
         keeps: "level and one sharpness over time",
@@ -46,7 +41,6 @@ pub const FORMATS: &[Format] = &[
         title: "Android VibrationEffect, as JSON or Kotlin",
         extensions: &["json", "kt"],
         reads: None,
-        #[cfg(feature = "export")]
         writes: Some(Writes::Signal { write: writers::android, profile: "android", settings: &[] }),
         rights: rights::ANDROID,
         keeps: "level and one frequency over time, in as many points as the device takes",
@@ -57,7 +51,6 @@ pub const FORMATS: &[Format] = &[
         title: "MPEG .hjif, ISO/IEC 23090-31",
         extensions: &["hjif"],
         reads: Some(Reads::Signal(hjif::signal)),
-        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::hjif,
             profile: "quest",
@@ -72,7 +65,6 @@ pub const FORMATS: &[Format] = &[
         title: "WAV that drives an actuator",
         extensions: &["wav"],
         reads: None,
-        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::wav,
             profile: "console",
@@ -87,7 +79,6 @@ pub const FORMATS: &[Format] = &[
         title: "friction map, 8-bit PNG",
         extensions: &["png"],
         reads: Some(Reads::Map),
-        #[cfg(feature = "export")]
         writes: Some(Writes::Map),
         rights: rights::PNG,
         keeps: "the friction at each place, 255 x 255 pixels at most, and their distance",
@@ -98,7 +89,6 @@ pub const FORMATS: &[Format] = &[
         title: "glTF 2.0 with the extension HTEX_texture",
         extensions: &["glb", "gltf"],
         reads: Some(Reads::Asset(gltf::import)),
-        #[cfg(feature = "export")]
         writes: Some(Writes::Asset(gltf::export)),
         rights: rights::GLTF,
         keeps: "the asset's file, bit for bit, on the material of a mesh",
@@ -149,7 +139,6 @@ fn extensions_of(is_it: fn(Option<&Reads>) -> bool) -> String {
 
 /// Returns the names of the formats that can be exported.
 #[must_use]
-#[cfg(feature = "export")]
 pub fn exported() -> Vec<&'static str> {
     let written = FORMATS.iter().filter(|format| format.writes.is_some());
     written.map(|format| format.name).collect()
@@ -157,7 +146,6 @@ pub fn exported() -> Vec<&'static str> {
 
 /// Returns a Markdown table of the formats, for documents.
 #[must_use]
-#[cfg(feature = "export")]
 pub fn formats_table() -> String {
     let mut text = String::from(
         "| name | format | files | in | out | licence and author | keeps | loses |\n|---|---|---|---|---|---|---|---|\n",

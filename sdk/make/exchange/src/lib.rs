@@ -18,75 +18,56 @@
 //! }
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
-//!
-//! The feature `export` is on by default. Without this feature, formats can only be imported, and
-//! [`Format`] has no field `writes`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 pub mod ahap;
-#[cfg(feature = "export")]
 pub mod android;
 mod curve;
 mod error;
-#[cfg(feature = "export")]
 mod export;
 mod format;
 mod formats;
 pub mod gltf;
 pub mod haptic;
 pub mod hatt;
-#[cfg(feature = "export")]
 mod heard;
 pub mod hjif;
 mod import;
-#[cfg(feature = "export")]
 mod job;
 mod json;
-#[cfg(feature = "export")]
 mod loss;
 pub mod map;
 mod pattern;
 mod physical;
 mod profile;
-#[cfg(feature = "export")]
 mod reduce;
 mod rights;
 mod settings;
-#[cfg(feature = "export")]
 mod stroke;
-#[cfg(feature = "export")]
 mod wav;
-#[cfg(feature = "export")]
 mod writers;
 
 pub use ahap::Ahap;
-#[cfg(feature = "export")]
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-#[cfg(feature = "export")]
 pub use export::{ActuatorPlay, Export, ExportedFile, export, export_scene};
-pub use format::{Format, Naming, RATE_HZ, ReadPositions, ReadSignal, Reads, Sampling, Signal};
-#[cfg(feature = "export")]
-pub use format::{WriteSignal, Writes};
-pub use formats::{FORMATS, imported, imported_signals};
-#[cfg(feature = "export")]
-pub use formats::{exported, formats_table};
+pub use format::{
+    Format, Naming, RATE_HZ, ReadPositions, ReadSignal, Reads, Sampling, Signal, WriteSignal,
+    Writes,
+};
+pub use formats::{FORMATS, exported, formats_table, imported, imported_signals};
 pub use haptic::Haptic;
-#[cfg(feature = "export")]
 pub use heard::{Path, SceneSound};
 pub use hjif::Hjif;
 pub use import::{Import, ImportedAsset, fit_signals, import, recording_of};
-#[cfg(feature = "export")]
 pub use job::{Coding, Job, WrittenSignal};
 pub use json::MOST_BYTES;
-#[cfg(feature = "export")]
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use physical::{Physical, missing};
 pub use profile::{Kind, PROFILES, Profile, SourcedValue, profile_names, profiles_table};
 pub use rights::RightsPlace;
 pub use settings::SignalSettings;
-#[cfg(feature = "export")]
 pub use stroke::Stroke;

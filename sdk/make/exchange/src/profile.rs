@@ -123,7 +123,6 @@ impl Profile {
     }
 
     /// Returns the largest peak acceleration of the actuator at a frequency, m/s².
-    #[cfg(feature = "export")]
     #[must_use]
     pub(crate) fn strongest_at(&self, hertz: f64) -> f64 {
         self.strongest_m_s2.value * self.response(hertz)

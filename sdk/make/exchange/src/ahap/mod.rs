@@ -13,7 +13,6 @@
 //! reference software of ISO/IEC 23090-31.
 
 mod control;
-#[cfg(feature = "export")]
 mod write;
 
 use std::ops::RangeInclusive;
@@ -29,10 +28,8 @@ use control::Controls;
 
 /// Longest allowed continuous event, seconds (documentation of
 /// `CHHapticEvent.EventType.hapticContinuous`).
-#[cfg(feature = "export")]
 pub(crate) const LONGEST_EVENT_S: f64 = 30.0;
 /// Largest number of control points that are written into one curve.
-#[cfg(feature = "export")]
 pub(crate) const POINTS_OF_A_CURVE: usize = 16;
 
 /// An `.ahap` file.

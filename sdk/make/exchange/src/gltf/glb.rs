@@ -91,7 +91,6 @@ impl<'a> Chunk<'a> {
 }
 
 /// Writes a container. It must be smaller than 4 GiB.
-#[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     // The specification requires that JSON is padded with blanks, so that it stays valid, and that
     // bytes are padded with zeros.
@@ -110,7 +109,6 @@ pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     file
 }
 
-#[cfg(feature = "export")]
 fn padded(mut bytes: Vec<u8>, by: u8) -> Vec<u8> {
     bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), by);
     bytes

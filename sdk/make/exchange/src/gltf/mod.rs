@@ -7,12 +7,10 @@
 mod glb;
 mod material;
 mod read;
-#[cfg(feature = "export")]
 mod write;
 
 pub use material::{EXTENSION, Material, MediaType, material_schema};
 pub use read::{Texture, read};
 
 pub(crate) use read::{copyright, import};
-#[cfg(feature = "export")]
 pub(crate) use write::export;

@@ -274,7 +274,6 @@ fn decoded(uri: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
 }
 
 /// Encodes a buffer as a data URI.
-#[cfg(feature = "export")]
 pub(super) fn data_uri(bytes: &[u8]) -> String {
     format!("data:{};base64,{}", BUFFER_TYPES[1], STANDARD.encode(bytes))
 }

@@ -13,7 +13,6 @@ mod check;
 mod number;
 mod render;
 mod wavelet;
-#[cfg(feature = "export")]
 mod write;
 
 use serde::{Deserialize, Serialize};
@@ -25,11 +24,7 @@ use crate::json;
 use number::{whole, whole_or_none};
 
 pub use wavelet::{analysed, synthesised};
-#[cfg(feature = "export")]
-pub(crate) use write::Tone;
-#[cfg(feature = "export")]
-pub(crate) use write::vectorial;
-#[cfg(feature = "export")]
+pub(crate) use write::{Tone, vectorial};
 pub use write::{Space, waveform};
 
 /// An `.hjif` file.

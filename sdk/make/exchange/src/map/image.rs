@@ -5,9 +5,7 @@ use std::io::Cursor;
 
 use htex_format::Rights;
 use htex_map::MOST_SIDE;
-#[cfg(feature = "export")]
-use png::Encoder;
-use png::{BitDepth, ColorType, Decoder, Limits, PixelDimensions, Transformations, Unit};
+use png::{BitDepth, ColorType, Decoder, Encoder, Limits, PixelDimensions, Transformations, Unit};
 
 use crate::error::Fault;
 
@@ -152,7 +150,6 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
 }
 
 /// Writes an image as an 8-bit grey PNG. The file states a whole number of pixels per metre.
-#[cfg(feature = "export")]
 pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault> {
     let failed = |error: png::EncodingError| Fault::whole(error.to_string());
     let rows = image.grey.len() / image.width.max(1);

@@ -11,13 +11,11 @@
 
 mod asset;
 mod image;
-#[cfg(feature = "export")]
 mod write;
 
 pub(crate) use asset::import;
 pub use image::{Image, read};
 pub(crate) use image::{PITCH_MM, rights};
-#[cfg(feature = "export")]
 pub(crate) use write::export;
 
 /// The model that plays the pixels.

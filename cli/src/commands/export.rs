@@ -29,7 +29,8 @@ use crate::scene_sound::{Scene, is_scene};
 /// The profile of an actuator describes which part of the spectrum the actuator can reproduce. The
 /// command prints the difference between the file and the asset. To measure this difference, the
 /// command reads the written file again, simulates how the actuator plays the file, and compares
-/// the result with the asset's own samples.
+/// the result with the asset's own samples. The command also prints the licence and the author that
+/// the file states.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The asset or the scene to export. A scene also states the motion and the models
@@ -101,8 +102,7 @@ struct ExportReport<'a> {
 
 impl Export {
     pub(crate) fn run(self) -> Result {
-        let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
-        let format = Format::find(&self.to).ok_or_else(unknown)?;
+        let format = Format::find_for_export(&self.to)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
@@ -165,8 +165,6 @@ impl Export {
         if let Some(stroke) = &settings.stroke {
             return Ok(Path::Stroke(Stroke::open(stroke)?));
         }
-        let beyond = settings.choice.beyond(asset, htex::play::Effects::default());
-        note(&Vec::from_iter(beyond.map_err(for_file(&self.asset))?));
         Ok(Path::Condition(settings.choice.motion(asset).map_err(for_file(&self.asset))?))
     }
 
@@ -185,12 +183,13 @@ impl Display for ExportReport<'_> {
         let played = exported.played.as_ref();
         writeln!(
             f,
-            "{}: {bytes} bytes{}{}{}\nthe format loses {}",
+            "{}: {bytes} bytes{}{}{}\nthe format loses {}\n{}",
             plain(file),
             played.map(played_text).unwrap_or_default(),
             exported.lost.as_ref().map(lost).unwrap_or_default(),
             played.map(limited).unwrap_or_default(),
             exported.loses,
+            exported.rights,
         )
     }
 }
@@ -222,7 +221,7 @@ fn lost(lost: &Loss) -> String {
 impl From<ExchangeError> for Failure {
     fn from(error: ExchangeError) -> Self {
         use ExchangeError::{
-            Missing, NoSamples, OutOfRange, Rights, UnknownFormat, UnknownProfile, Unused,
+            Missing, NoSamples, OutOfRange, Rights, UnknownFormat, UnknownName, Unused,
         };
         let flag = |setting: &str| format!("--{}", setting.replace('_', "-"));
         match error {
@@ -232,7 +231,7 @@ impl From<ExchangeError> for Failure {
             | OutOfRange { .. }
             | Rights { .. }
             | UnknownFormat { .. }
-            | UnknownProfile { .. }
+            | UnknownName { .. }
             | NoSamples { .. }) => Self::Usage(error.message_with(&flag)),
             error => Self::other(error),
         }

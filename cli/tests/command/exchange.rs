@@ -202,7 +202,8 @@ fn an_export_says_what_is_lost() {
     ] {
         let line = format!("export hum.htex --to {to} -o {file}");
         let (text, error) = run(&place, &line, 0);
-        for part in ["lost: felt ", "nine bands ", "level ", "the format loses "] {
+        let rights = "\nIt states the licence CC0-1.0 (";
+        for part in ["lost: felt ", "nine bands ", "level ", "the format loses ", rights] {
             assert!(text.contains(part), "{to}: {text}");
         }
         assert!(error.contains("are assumed, not measured"), "{to}: {error}");
@@ -210,6 +211,7 @@ fn an_export_says_what_is_lost() {
         let told = place.json(&words(&format!("{line} --json")));
         assert_eq!(told["format"], to);
         assert_eq!(told["bytes"], first.len());
+        assert!(text.ends_with(&format!("{}\n", told["rights"].as_str().unwrap())), "{text}");
         assert_eq!(told["seconds"], 2.0);
         assert!(told["lost"]["level_db"].is_f64() && told["limited"].is_number());
         assert!(told["lost"]["band_error_rms_db"].is_f64(), "{told}");
@@ -274,6 +276,7 @@ fn an_export_follows_condition_stroke_and_profile() {
     let (_, plain) = bytes("");
     let (told, fast) = bytes("--speed 160 --force 0.4 --seconds 1");
     assert_eq!(told["seconds"], 1.0);
+    assert!(told["notes"].to_string().contains("160 mm/s, where "), "{told}");
     assert_ne!(plain, fast);
     let (told, along) = bytes("--stroke stroke.csv");
     assert_eq!(told["seconds"], 2.0);

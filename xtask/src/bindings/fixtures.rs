@@ -42,7 +42,8 @@ const COPIES: usize = 999;
 /// - a library (`many.htexlib`) and its list;
 /// - scenes with their samples and plans;
 /// - the models as modules, and a module that does not return;
-/// - files of other haptic formats, with the textures imported from them.
+/// - files of other haptic formats, with the textures imported from them, and files exported from
+///   textures.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
@@ -92,6 +93,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         let file = fs_err::File::create(folder.join(out))?;
         run(program(&command, folder).args(arguments).stdout(file.into_file()))
     };
+    exchanged::write_exports(folder, &htex, &printed)?;
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
     printed(&["info", "vinyl.htex", "--json"], "info.json")?;

@@ -32,9 +32,9 @@ fn tests(folder: &Path, variables: &[(&str, &str)]) -> Result<()> {
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     run(program("node", &tests)
         .args(["--test", "--test-concurrency=1"])
-        .args(["page.test.mjs", "import.test.mjs", "opening.test.mjs", "history.test.mjs"])
-        .args(["trust.test.mjs", "knobs.test.mjs", "windows.test.mjs", "slots.test.mjs"])
-        .args(["look.test.mjs", "served.test.mjs", "firefox.test.mjs"])
+        .args(["page.test.mjs", "import.test.mjs", "exports.test.mjs", "opening.test.mjs"])
+        .args(["history.test.mjs", "trust.test.mjs", "knobs.test.mjs", "windows.test.mjs"])
+        .args(["slots.test.mjs", "look.test.mjs", "served.test.mjs", "firefox.test.mjs"])
         .envs(variables.iter().copied())
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)

@@ -39,6 +39,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "sound.test.mjs",
             "author.test.mjs",
             "import.test.mjs",
+            "export.test.mjs",
             "scene.test.mjs",
             "scene-browser.test.mjs",
             "author-browser.test.mjs",

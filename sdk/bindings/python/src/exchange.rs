@@ -129,8 +129,7 @@ impl Importing {
 
 impl Exporting {
     fn export(&self, texture: &Texture) -> PyResult<htex_exchange::ExportedFile> {
-        let format = Format::find(&self.to)
-            .ok_or_else(|| unknown("to", &self.to, &htex_exchange::exported().join(", ")))?;
+        let format = Format::find_for_export(&self.to).map_err(raised)?;
         let mut export = Export::new(format);
         export.path = self.path(texture)?;
         export.model = self.model.as_deref();
@@ -140,7 +139,7 @@ impl Exporting {
         export.rate_hz = self.rate_hz;
         export.seed = self.seed;
         export.extension = self.extension.as_deref();
-        export.coding = self.coding.as_deref().map(coding).transpose()?;
+        export.coding = self.coding.as_deref().map(Coding::find).transpose().map_err(raised)?;
         let file = match format.writes {
             Some(Writes::Asset(_)) => Some(texture.bytes()?),
             _ => None,
@@ -150,30 +149,14 @@ impl Exporting {
     }
 
     fn path(&self, texture: &Texture) -> PyResult<htex_exchange::Path> {
-        let motion = match (self.speed_mm_s, self.force_n) {
-            (None, None) => None,
-            (speed, force) => {
-                let representation = texture.asset().representation(self.model.as_deref());
-                Some(representation.map_err(raised)?.motion(speed, force))
+        match &self.stroke {
+            // The caller has checked that there is no speed and no force besides the stroke.
+            Some(file) => Ok(htex_exchange::Path::Stroke(Stroke::open(file).map_err(raised)?)),
+            None => {
+                let (asset, model) = (texture.asset(), self.model.as_deref());
+                htex_exchange::Path::at(asset, model, self.speed_mm_s, self.force_n).map_err(raised)
             }
-        };
-        match (&self.stroke, motion) {
-            (None, motion) => Ok(htex_exchange::Path::Condition(motion)),
-            (Some(file), None) => {
-                Ok(htex_exchange::Path::Stroke(Stroke::open(file).map_err(raised)?))
-            }
-            (Some(_), Some(_)) => Err(option(
-                "a stroke has its own speed and force; give the stroke, or speed_mm_s and force_n",
-            )),
         }
-    }
-}
-
-fn coding(name: &str) -> PyResult<Coding> {
-    match name {
-        "vectorial" => Ok(Coding::Vectorial),
-        "wavelet" => Ok(Coding::Wavelet),
-        other => Err(unknown("coding", other, "vectorial, wavelet")),
     }
 }
 

@@ -1,4 +1,4 @@
-// The module of imports: loaded when a file of another haptic format is first opened.
+// The module of imports and exports. It is loaded when it is first needed.
 
 import { loadImporter, type Importer } from "htex/import";
 

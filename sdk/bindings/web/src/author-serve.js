@@ -1,5 +1,5 @@
-// Runs fits and imports for a page or a program, in a worker. Each call has its own instance of the
-// module, whose memory is freed afterwards.
+// Runs fits, imports and exports for a page or a program, in a worker. Each call has its own
+// instance of the module, whose memory is freed afterwards.
 
 import { AuthorCore } from "./author-core.js";
 

@@ -1,4 +1,4 @@
-// Calls modules in a worker, for fits and imports.
+// Calls modules in a worker, for fits, imports and exports.
 
 import { HtexError } from "./core.js";
 import { host } from "./host.js";

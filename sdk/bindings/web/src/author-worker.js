@@ -1,4 +1,4 @@
-// The worker of a page that runs fits and imports.
+// The worker of a page that runs fits, imports and exports.
 
 import { serveAuthor } from "./author-serve.js";
 

@@ -3,7 +3,7 @@
 
 import { AuthorCore } from "./author-core.js";
 import { inThread, setThread, throwIfAborted } from "./author-thread.js";
-import { argument, bytesOf, copiesIn, loaded, named } from "./files.js";
+import { argument, bytesOf, bytesOfTexture, copiesIn, loaded, named } from "./files.js";
 import { compiledFrom, library, opened } from "./library.js";
 
 let source = () => new URL("./htex-author.wasm", import.meta.url);
@@ -192,10 +192,6 @@ export class Author {
     const request = { name, unlicensed, textures: all.map(([own]) => own) };
     return this.core.call("library", request, all.map(([, texture]) => bytesOfTexture(texture))).bytes;
   }
-}
-
-function bytesOfTexture(texture) {
-  return bytesOf(texture?.bytes ?? texture);
 }
 
 /** Returns the minimum and maximum of each signal in each time step. */

@@ -32,6 +32,11 @@ export function bytesOf(data) {
   }
 }
 
+/** Returns the bytes of a texture's file: of a Texture, or of bytes. */
+export function bytesOfTexture(texture) {
+  return bytesOf(texture?.bytes ?? texture);
+}
+
 /** Returns the buffers of loaded files that nobody else uses, so that a worker may take them. */
 export function copiesIn(files) {
   return files.flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));

@@ -1,9 +1,10 @@
-// Import files of other haptic formats as textures. A separate WASM module reads them. It also
-// contains the author module, and is loaded when it is first needed.
+// Import files of other haptic formats as textures, and export textures to such files. A separate
+// WASM module reads and writes them. It also contains the author module, and is loaded when it is
+// first needed.
 
 import { AuthorCore } from "./author-core.js";
 import { inThread, setThread, throwIfAborted } from "./author-thread.js";
-import { copiesIn, loaded, named } from "./files.js";
+import { bytesOfTexture, copiesIn, loaded, named } from "./files.js";
 import { compiledFrom, library, opened } from "./library.js";
 
 let source = () => new URL("./htex-import.wasm", import.meta.url);
@@ -45,7 +46,13 @@ function callOf({ name, bytes }, { models, ...settings }) {
   return { request: { file: name, settings }, files: [bytes] };
 }
 
-/** Reads files of other formats, in the calling thread. */
+/** Returns the arguments for a call that exports a texture. `stroke` is a file, or undefined. */
+function exportOf(texture, to, stroke, settings) {
+  const request = { format: to, settings: { ...settings, stroke: stroke?.name } };
+  return { request, files: [bytesOfTexture(texture), ...(stroke ? [stroke.bytes] : [])] };
+}
+
+/** Reads and writes files of other formats, in the calling thread. */
 export class Importer {
   constructor(core, player) {
     this.core = core;
@@ -53,8 +60,8 @@ export class Importer {
   }
 
   /**
-   * Returns the formats that can be imported, and the actuators. Some formats give frequencies as
-   * positions in an actuator's range.
+   * Returns the formats that can be imported (`formats`) and exported (`exports`), and the
+   * actuators (`profiles`).
    */
   formats() {
     return this.core.call("formats", {}).document;
@@ -72,6 +79,13 @@ export class Importer {
     const { document, bytes } = this.core.call("import", request, files);
     return { texture: opened(this.player, bytes), report: document };
   }
+
+  /** Exports a texture to the format with the name `to`. */
+  exportFile(texture, to, { stroke, ...settings } = {}) {
+    const { request, files } = exportOf(texture, to, stroke && named(stroke), settings);
+    const { document, bytes } = this.core.call("export", request, files);
+    return { bytes, ...document };
+  }
 }
 
 /** Imports a file in a worker. `onProgress` is called with `{ done, of, text }`; `signal` aborts the import. */
@@ -82,4 +96,13 @@ export async function importFile(file, { onProgress, signal, ...settings } = {})
   const { document, bytes } = await inThread("import", loading, callOf(given, settings), { copies: copiesIn([given]), onProgress, signal });
   const [, player] = await loading;
   return { texture: opened(player, bytes), report: document };
+}
+
+/** Exports a texture to the format with the name `to`, in a worker. `signal` aborts the export. */
+export async function exportFile(texture, to, { signal, stroke, ...settings } = {}) {
+  throwIfAborted(signal, "export");
+  const path = stroke && (await loaded(stroke));
+  const call = exportOf(texture, to, path, settings);
+  const { document, bytes } = await inThread("export", Promise.all([compiled()]), call, { copies: path ? copiesIn([path]) : [], signal });
+  return { bytes, ...document };
 }

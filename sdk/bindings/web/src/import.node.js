@@ -1,4 +1,4 @@
-// Imports in Node.js.
+// Imports and exports in Node.js.
 
 import "./index.node.js";
 

@@ -89,3 +89,12 @@ test("a page imports a file of another format to the bytes of the command, in a 
   assert.ok(Buffer.from(found.bytes).equals(await bytes("imported/row.htex")));
   assert.deepEqual([found.error.code, /give full_scale/.test(found.error.message)], ["invalid-argument", true]);
 });
+
+test("a page exports a texture to the bytes of the command, in a worker", async () => {
+  const exported = await made.evaluate(async () => {
+    const { exportFile } = await import("/htex/import.js");
+    const texture = await (await fetch("/fixtures/vinyl.htex")).arrayBuffer();
+    return Array.from((await exportFile(texture, "wav", { rate_hz: 4000, model: "ar" })).bytes);
+  });
+  assert.ok(Buffer.from(exported).equals(await bytes("exported/vinyl.wav")));
+});

@@ -18,8 +18,8 @@ import {
   setAuthorLibrary,
   setLibrary,
 } from "htex";
-import { importFile, loadImporter, setImportLibrary } from "htex/import";
-import type { Asked, Imported, ImportFormat } from "htex/import";
+import { exportFile, importFile, loadImporter, setImportLibrary } from "htex/import";
+import type { Asked, Exported, ExportFormat, Imported, ImportFormat } from "htex/import";
 import { scene, setSceneLibrary } from "htex/scene";
 import type { Scene } from "htex/scene";
 import type { PadPlayer } from "htex";
@@ -122,6 +122,18 @@ export async function importFiles(file: File): Promise<number> {
   await importFile(file, { speed: 80 });
   console.log(first?.keeps, profiles[0]?.low_hz, asked[0]?.words, report.warnings[0]?.text, report.models[0]?.felt?.error_rms_db, report.format, here.report.ranked);
   return texture.toBytes().length;
+}
+
+export async function exportTexture(texture: Texture, stroke: File): Promise<number> {
+  const importer = await loadImporter();
+  const format: ExportFormat | undefined = importer.formats().exports.find(({ settings }) => settings.includes("coding"));
+  const { bytes, extension, report }: Exported = await exportFile(texture, format?.name ?? "hjif", { coding: "wavelet", speed_mm_s: 80, force_n: 0.4, seed: 7, signal: new AbortController().signal });
+  const along: Exported = await exportFile(texture.toBytes(), "ahap", { stroke, profile: "iphone" });
+  const here: Exported = importer.exportFile(texture, "android", { extension: "kt", stroke: { name: "stroke.csv", bytes: new ArrayBuffer(8) } });
+  // @ts-expect-error: speeds have their unit in the name.
+  await exportFile(texture, "wav", { speed: 80 });
+  console.log(extension, report.rights, report.loses, report.notes[0], report.profile, report.limited, report.lost?.felt.error_rms_db, report.lost?.level_db, along.extension, here.bytes.length);
+  return bytes.length;
 }
 
 export async function playScene(text: ArrayBuffer, texture: Uint8Array): Promise<number> {

@@ -65,7 +65,7 @@ pub enum ExchangeError {
     #[error("{}", unused(.format, .way, .setting, .takes, &keyword))]
     Unused {
         format: &'static str,
-        /// `import`, `export` or `export of a scene`.
+        /// `import`, `export`, `export along a stroke` or `export of a scene`.
         way: &'static str,
         /// The setting as a keyword, such as `full_scale`.
         setting: String,
@@ -89,9 +89,14 @@ pub enum ExchangeError {
         /// What each of these files states.
         stated: String,
     },
-    /// No actuator profile has this name.
-    #[error("there is no profile `{wanted}`; there are {there}")]
-    UnknownProfile { wanted: String, there: String },
+    /// No actuator profile, format or coding has this name.
+    #[error("there is no {what} `{wanted}`; there are {there}")]
+    UnknownName {
+        /// `profile`, `format` or `coding`.
+        what: &'static str,
+        wanted: String,
+        there: String,
+    },
     /// The actuator cannot play files of this format.
     #[error(
         "{profile} is a motor whose frequency follows its level, and {format} holds samples; choose {instead}"
@@ -183,6 +188,16 @@ fn unused(
     };
     let setting = named(setting);
     format!("{format}: its {way} takes no {setting}; leave it out{taken}")
+}
+
+/// Makes the error for a name that nothing has. `there` are the names that exist.
+pub(crate) fn unknown_name<'a>(
+    what: &'static str,
+    wanted: &str,
+    there: impl IntoIterator<Item = &'a str>,
+) -> ExchangeError {
+    let there = list(there.into_iter().map(str::to_owned));
+    ExchangeError::UnknownName { what, wanted: quoted(wanted), there }
 }
 
 /// Joins parts as `a, b and c`.

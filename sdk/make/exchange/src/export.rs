@@ -1,6 +1,7 @@
 //! Exports assets to files of other formats, and reports what is lost.
 
-use htex_play::Texture;
+use htex_format::Rights;
+use htex_play::{Effects, Texture};
 use serde::Serialize;
 
 use crate::error::ExchangeError;
@@ -15,7 +16,7 @@ use crate::profile::Profile;
 /// 0.2 s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
 /// Highest sample rate of an export, hertz.
-const MOST_RATE_HZ: f64 = 192_000.0;
+pub(crate) const MOST_RATE_HZ: f64 = 192_000.0;
 
 /// Settings of an export.
 #[derive(Debug, Clone)]
@@ -126,19 +127,22 @@ pub struct ExportedFile {
     pub lost: Option<Loss>,
     /// Text that says which parts of a texture the format always loses.
     pub loses: &'static str,
+    /// A sentence about the licence and the author that the file states.
+    pub rights: String,
     /// Other remarks, each as a sentence.
     pub notes: Vec<String>,
 }
 
 impl ExportedFile {
     /// Makes the result for a file that stores the asset itself, so that nothing is lost.
-    pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>) -> Self {
+    pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>, rights: &Rights) -> Self {
         Self {
             bytes,
             format: format.name,
             played: None,
             lost: None,
             loses: format.loses,
+            rights: format.rights.sentence(rights),
             notes: Vec::new(),
         }
     }
@@ -164,7 +168,7 @@ pub struct ActuatorPlay {
 pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
-    match format.writes {
+    let mut exported = match format.writes {
         Some(Writes::Signal { write, profile, .. }) => {
             let source =
                 Source::Asset { asset, model: export.model, path: &export.path, seed: export.seed };
@@ -174,7 +178,10 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, Exch
             };
             of_signal(Playing { source, seconds }, export, write, profile)
         }
-        Some(Writes::Asset(write)) => Ok(ExportedFile::of_asset(format, write(asset, export)?)),
+        Some(Writes::Asset(write)) => {
+            let rights = Rights::from_manifest(asset.manifest());
+            Ok(ExportedFile::of_asset(format, write(asset, export)?, &rights))
+        }
         Some(Writes::Map) => {
             let motion = match export.path {
                 Path::Condition(motion) => motion,
@@ -183,7 +190,19 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, Exch
             map::export(asset, export, motion)
         }
         None => Err(not_written(format)),
-    }
+    }?;
+    exported.notes.extend(beyond(asset, export)?);
+    Ok(exported)
+}
+
+/// Returns a note on how the asset plays the motion, if the motion is outside the recorded ones.
+fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, ExchangeError> {
+    let Path::Condition(Some(motion)) = export.path else {
+        return Ok(None);
+    };
+    let conditions = asset.representation(export.model)?.conditions()?;
+    let coverage = conditions.coverage(motion, Effects::default());
+    Ok((!coverage.is_inside()).then(|| coverage.to_string()))
 }
 
 /// Writes the vibration that a scene plays as a file of another format. Models, motion and seed are
@@ -252,6 +271,7 @@ fn of_signal(
         bytes: written.bytes,
         format: export.format.name,
         loses: export.format.loses,
+        rights: export.format.rights.sentence(&job.playing.source.rights()),
         notes: [written.notes, job.notes()].concat(),
     })
 }

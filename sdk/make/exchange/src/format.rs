@@ -118,7 +118,11 @@ const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports that store what an asset plays.
 const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profile", "seed"];
 
-/// Those of these settings that a scene determines when a scene is exported.
+/// The setting of [`PLAYED`] that names a stroke.
+const STROKE: &str = "stroke";
+/// Those of [`PLAYED`] that a stroke determines when a texture is exported along a stroke.
+const OF_STROKES: &[&str] = &["speed", "force", "seconds"];
+/// Those of [`PLAYED`] that a scene determines when a scene is exported.
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
@@ -181,7 +185,8 @@ impl Format {
         self.check("import", takes.unwrap_or_default(), given)
     }
 
-    /// Checks that an export accepts the given settings, which are keywords such as `full_scale`.
+    /// Checks that an export accepts the given settings, which are keywords such as `full_scale`. A
+    /// stroke determines the motion and the duration, so settings for these do not apply with it.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.
@@ -189,8 +194,13 @@ impl Format {
         &self,
         given: impl IntoIterator<Item = &'a str>,
     ) -> Result<(), ExchangeError> {
-        let takes = self.writes.as_ref().map(Writes::settings);
-        self.check("export", takes.unwrap_or_default(), given)
+        let given = Vec::from_iter(given);
+        let mut takes = self.writes.as_ref().map(Writes::settings).unwrap_or_default();
+        if takes.contains(&STROKE) && given.contains(&STROKE) {
+            takes.retain(|setting| !OF_STROKES.contains(setting));
+            return self.check("export along a stroke", takes, given);
+        }
+        self.check("export", takes, given)
     }
 
     /// Checks that an export of a scene accepts the given settings. The scene determines models,

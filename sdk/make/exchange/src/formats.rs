@@ -1,6 +1,6 @@
 //! The table of all formats. Commands, help texts, messages and documents use this table.
 
-use crate::error::{ExchangeError, list};
+use crate::error::{ExchangeError, list, unknown_name};
 use crate::format::{Format, Reads, Writes};
 use crate::{ahap, gltf, haptic, hatt, hjif, rights, writers};
 
@@ -101,6 +101,14 @@ impl Format {
     #[must_use]
     pub fn find(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
+    }
+
+    /// Finds a format by its name, for an export.
+    ///
+    /// # Errors
+    /// When no format has the name. The error lists the formats that can be exported.
+    pub fn find_for_export(name: &str) -> Result<&'static Self, ExchangeError> {
+        Self::find(name).ok_or_else(|| unknown_name("format", name, exported()))
     }
 
     /// Finds the format that imports a file, by the file's extension.

@@ -13,6 +13,9 @@ use crate::stroke::Stroke;
 
 /// Number of bands in the envelope.
 pub(crate) const BANDS: usize = 14;
+/// Largest number of samples of an export. The memory of a machine of 32 bits, such as a WASM
+/// module, holds no more.
+const MOST_SAMPLES: usize = if usize::BITS < 64 { 1 << 24 } else { usize::MAX };
 /// Time that is played before the first exported sample, so that the analysis windows are full,
 /// seconds.
 const BEFORE_S: f64 = 0.2;
@@ -144,9 +147,13 @@ impl Playing<'_> {
     /// seconds.
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {
         let (quantity, band) = (self.source.quantity(), self.source.band());
+        let len = libm::round(self.seconds * rate_hz).max(1.0) as usize;
+        if len > MOST_SAMPLES {
+            let range = "at this sample rate, so many samples do not fit into the memory";
+            return Err(ExchangeError::OutOfRange { name: "seconds", value: self.seconds, range });
+        }
         let mut analyser = Analyser::new(BANDS, band, rate_hz);
         let edges_hz = analyser.edges_hz().to_vec();
-        let len = libm::round(self.seconds * rate_hz).max(1.0) as usize;
         let frames = (libm::round(block_s * rate_hz).max(1.0) as usize).min(len);
         let (before, samples) = self.samples(rate_hz, len, frames)?;
         analyser.push(&before);
@@ -203,6 +210,25 @@ impl Playing<'_> {
 }
 
 impl Path {
+    /// Makes the path at one speed (mm/s) and force (N). A missing value comes from the default
+    /// condition of the representation with this model, or else from the paper (80 mm/s, 0.4 N).
+    /// Without both, the path is the default condition itself.
+    ///
+    /// # Errors
+    /// When the asset has no such representation.
+    pub fn at(
+        asset: &Texture,
+        model: Option<&str>,
+        speed_mm_s: Option<f64>,
+        force_n: Option<f64>,
+    ) -> Result<Self, ExchangeError> {
+        if speed_mm_s.is_none() && force_n.is_none() {
+            return Ok(Self::Condition(None));
+        }
+        let motion = asset.representation(model)?.motion(speed_mm_s, force_n);
+        Ok(Self::Condition(Some(motion)))
+    }
+
     fn motion_at(&self, time_s: f64) -> Option<Motion> {
         match self {
             Self::Condition(motion) => *motion,

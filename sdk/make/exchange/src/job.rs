@@ -1,6 +1,6 @@
 //! The input and the result of a format's writer.
 
-use crate::error::{ExchangeError, Fault};
+use crate::error::{ExchangeError, Fault, unknown_name};
 use crate::export::Export;
 use crate::heard::{Heard, Playing};
 use crate::profile::{Kind, Profile};
@@ -14,6 +14,22 @@ pub enum Coding {
     Vectorial,
     /// Samples
     Wavelet,
+}
+
+impl Coding {
+    const ALL: [(&'static str, Self); 2] =
+        [("vectorial", Self::Vectorial), ("wavelet", Self::Wavelet)];
+
+    /// Finds a coding by its name, `vectorial` or `wavelet`.
+    ///
+    /// # Errors
+    /// When no coding has the name. The error lists all names.
+    pub fn find(name: &str) -> Result<Self, ExchangeError> {
+        let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
+        let (_, coding) =
+            found.ok_or_else(|| unknown_name("coding", name, Self::ALL.map(|(own, _)| own)))?;
+        Ok(coding)
+    }
 }
 
 /// The input of a writer: the played vibration, and the actuator for which the file is written.

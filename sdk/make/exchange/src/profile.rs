@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{ExchangeError, list};
+use crate::error::{ExchangeError, unknown_name};
 
 /// All profiles, in the order in which documents list them.
 pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
@@ -85,10 +85,7 @@ impl Profile {
     /// When no profile has the name. The error lists all names.
     pub fn find(name: &str) -> Result<&'static Self, ExchangeError> {
         let found = PROFILES.iter().find(|profile| profile.name == name);
-        found.ok_or_else(|| ExchangeError::UnknownProfile {
-            wanted: name.to_owned(),
-            there: list(PROFILES.iter().map(|p| p.name.clone())),
-        })
+        found.ok_or_else(|| unknown_name("profile", name, profile_names()))
     }
 
     /// Returns the profile's values with their names.

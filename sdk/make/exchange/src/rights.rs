@@ -17,6 +17,23 @@ pub struct RightsPlace {
     pub(crate) read: fn(&[u8]) -> Rights,
 }
 
+impl RightsPlace {
+    /// Returns a sentence about the licence and the author that a file with these rights states.
+    pub(crate) fn sentence(&self, rights: &Rights) -> String {
+        let place = self.place;
+        match (&rights.license, &rights.author) {
+            (Some(license), Some(author)) => {
+                format!("It states the licence {license} and the author {author} ({place}).")
+            }
+            (Some(license), None) => format!("It states the licence {license} ({place})."),
+            (None, Some(author)) => {
+                format!("It states the author {author} ({place}). {UNLICENSED}")
+            }
+            (None, None) => UNLICENSED.to_owned(),
+        }
+    }
+}
+
 /// The place for a format whose files cannot state rights: the separate file `NAME.license`.
 pub(crate) const BESIDE: RightsPlace =
     RightsPlace { place: "FILE.license", read: |_| Rights::default() };
@@ -44,6 +61,10 @@ pub(crate) const GLTF: RightsPlace = RightsPlace {
     place: "asset.copyright, and the asset",
     read: |bytes| from_text(gltf::copyright(bytes)),
 };
+
+/// The sentence for an exported file without a licence.
+const UNLICENSED: &str =
+    "It states no licence, and without one nobody may pass it on; give the texture a licence.";
 
 fn from_text(text: Option<String>) -> Rights {
     text.map(|text| Rights::from_text(&text)).unwrap_or_default()

@@ -6,6 +6,7 @@ use crate::android::{
 };
 use crate::curve::{Point, simplified, value_at};
 use crate::error::ExchangeError;
+use crate::export::MOST_RATE_HZ;
 use crate::format::RATE_HZ;
 use crate::heard::{Heard, threshold};
 use crate::hjif::{Hjif, Space, Tone, vectorial, waveform};
@@ -284,6 +285,13 @@ fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
             "at {} mm/s its smallest steps of way are {:.0} samples in a second, and the texture needs {least_hz:.0}; choose a higher speed, or vectorial coding",
             space.speed_mm_s.unwrap_or_default(),
             space.rate_hz()
+        );
+        return Err(job.cannot(problem));
+    }
+    if space.rate_hz() > MOST_RATE_HZ {
+        let problem = format!(
+            "at {} mm/s its steps of way are more than {MOST_RATE_HZ} samples in a second; choose a lower speed, or vectorial coding",
+            space.speed_mm_s.unwrap_or_default()
         );
         return Err(job.cannot(problem));
     }

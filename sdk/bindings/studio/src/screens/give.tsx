@@ -3,6 +3,7 @@
 import { theAuthor, author } from "../author.ts";
 import { complete, copyLink, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, write, type Label } from "../giving.ts";
 import { Appearance } from "../parts/appearance.tsx";
+import { Exports } from "../parts/exports.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { Qr } from "../parts/qr.tsx";
 import { TextField } from "../parts/text-field.tsx";
@@ -144,7 +145,7 @@ export function Give() {
         <Actions />
         <Share />
         <Qr />
-        {/* The place of <Exports />. */}
+        <Exports first={complete} />
         <InPage />
         <Report />
       </div>

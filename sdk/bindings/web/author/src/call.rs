@@ -31,7 +31,7 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
     #[cfg(feature = "make")]
     crate::making::FUNCTIONS,
     #[cfg(feature = "import")]
-    crate::making::IMPORTS,
+    crate::making::EXCHANGE,
     #[cfg(feature = "scene")]
     crate::scene::FUNCTIONS,
 ];

@@ -109,6 +109,12 @@ impl Document {
         }
     }
 
+    /// Returns whether there is an entry of this name.
+    #[cfg(feature = "import")]
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.left.contains_key(name)
+    }
+
     /// Takes the remaining entries, whose names the caller chose.
     pub(crate) fn rest(self) -> Map<String, Value> {
         self.left

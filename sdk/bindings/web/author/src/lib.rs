@@ -1,7 +1,8 @@
 //! The WASM modules of the npm package, except the player. Each module is libhtex with one
 //! additional C function, [`htex_author_call`]. There are three builds. `htex-author.wasm` makes
 //! textures (feature `make`). `htex-import.wasm` makes textures from recordings and also from files
-//! of other haptic formats (feature `import`). `htex-scene.wasm` plays scenes (feature `scene`).
+//! of other haptic formats, and writes such files (feature `import`). `htex-scene.wasm` plays
+//! scenes (feature `scene`).
 //! Only the JavaScript in `sdk/bindings/web/src` calls the function: `author.js`, `import.js` and
 //! `scene.js`.
 //!

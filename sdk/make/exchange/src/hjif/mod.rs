@@ -24,8 +24,8 @@ use crate::json;
 use number::{whole, whole_or_none};
 
 pub use wavelet::{analysed, synthesised};
-pub(crate) use write::{Tone, vectorial};
 pub use write::{Space, waveform};
+pub(crate) use write::{Tone, vectorial};
 
 /// An `.hjif` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -42,10 +42,10 @@ pub(crate) fn export(
             "the texture is a map, whose pixels are the same at every motion; leave out speed and force",
         ));
     }
-    let (bytes, white) =
-        image(format, &parameters, level_rms, &Rights::from_manifest(asset.manifest()))?;
+    let rights = Rights::from_manifest(asset.manifest());
+    let (bytes, white) = image(format, &parameters, level_rms, &rights)?;
     let notes = vec![said(&parameters, white, asset)];
-    Ok(ExportedFile { notes, ..ExportedFile::of_asset(format, bytes) })
+    Ok(ExportedFile { notes, ..ExportedFile::of_asset(format, bytes, &rights) })
 }
 
 /// Returns the parameters and the level of a texture that is a friction map. They come from the
@@ -112,7 +112,7 @@ fn export_fit(
             said(&fit.parameters, white, asset),
             "It is one row, which repeats. It is felt only along the row, and as the texture only at that speed.".to_owned(),
         ],
-        ..ExportedFile::of_asset(format, bytes)
+        ..ExportedFile::of_asset(format, bytes, &rights)
     })
 }
 

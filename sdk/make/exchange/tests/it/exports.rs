@@ -156,6 +156,53 @@ fn numbers_that_cannot_be_are_refused() {
         .with_coding(Coding::Wavelet)
         .with_path(Path::Condition(Some(Motion::new(0.1, 0.4))));
     assert!(said(&slow).contains("choose a higher speed"), "{}", said(&slow));
+    for speed_mm_s in [1e6, 1e300] {
+        let fast = of("hjif")
+            .with_coding(Coding::Wavelet)
+            .with_path(Path::Condition(Some(Motion::new(speed_mm_s, 0.4))));
+        assert!(said(&fast).contains("choose a lower speed"), "{}", said(&fast));
+    }
+}
+
+/// A motion outside the recorded ones is exported, and a note says how the asset plays it.
+#[test]
+fn a_motion_that_was_not_recorded_is_noted() {
+    let asset = texture(Surface::Vinyl);
+    let noted = |speed, force| {
+        let path = Path::at(&asset, None, speed, force).unwrap();
+        let notes = export(&asset, &of("wav").with_path(path)).unwrap().notes;
+        notes.iter().any(|note| note.contains("was recorded"))
+    };
+    let recorded = asset.manifest().conditions[0];
+    assert!(!noted(None, None));
+    assert!(!noted(recorded.speed_mm_s, recorded.force_n));
+    assert!(noted(recorded.speed_mm_s.map(|speed| 2.0 * speed), None));
+}
+
+#[test]
+fn an_export_says_which_rights_the_file_states() {
+    let asset = texture(Surface::Vinyl);
+    let stated = |license: &str, author: &str, format: &str| {
+        let mut data = asset.data().clone();
+        data.manifest.license = Some(license.to_owned()).filter(|own| !own.is_empty());
+        data.manifest.author = Some(author.to_owned()).filter(|own| !own.is_empty());
+        export(&Texture::new(data), &of(format)).unwrap().rights
+    };
+    let all = ["haptic", "ahap", "android", "hjif", "wav", "png", "gltf"];
+    for format in all {
+        let place = Format::find(format).unwrap().rights.place;
+        assert_eq!(
+            stated("CC-BY-4.0", "Ada", format),
+            format!("It states the licence CC-BY-4.0 and the author Ada ({place}).")
+        );
+        assert_eq!(
+            stated("CC0-1.0", "", format),
+            format!("It states the licence CC0-1.0 ({place}).")
+        );
+        assert!(stated("", "", format).starts_with("It states no licence, and without one"));
+    }
+    let author = stated("", "Ada", "wav");
+    assert!(author.contains("the author Ada") && author.contains("no licence"), "{author}");
 }
 
 /// The Kotlin code has the same numbers as the JSON.

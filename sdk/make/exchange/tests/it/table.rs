@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use htex_exchange::{
-    Export, FORMATS, Format, Import, PROFILES, Physical, Profile, Reads, Writes, import,
+    Coding, Export, FORMATS, Format, Import, PROFILES, Physical, Profile, Reads, Writes, import,
 };
 use htex_play::Registry;
 
@@ -72,6 +72,17 @@ fn a_setting_that_means_nothing_is_refused() {
         "{error}"
     );
 
+    let along = |name: &str, setting| {
+        let refused = Format::find(name).unwrap().check_export(["stroke", setting]);
+        refused.map_or_else(|error| error.to_string(), |()| String::new())
+    };
+    for setting in ["speed", "force", "seconds"] {
+        let error = along("ahap", setting);
+        assert!(error.contains(&format!("along a stroke takes no `{setting}`")), "{error}");
+    }
+    assert_eq!(along("ahap", "profile"), "");
+    assert!(along("png", "speed").contains("its export takes no `stroke`"));
+
     // The functions refuse a setting that is set but does not apply.
     let how = Import {
         physical: Physical { speed_mm_s: Some(80.0), ..Physical::default() },
@@ -87,6 +98,14 @@ fn a_setting_that_means_nothing_is_refused() {
     let not_written = Export::new(Format::find("hatt").unwrap());
     let error = htex_exchange::export(&asset, &not_written).unwrap_err().to_string();
     assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
+    let error = Format::find_for_export("bmp").unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "there is no format `bmp`; there are haptic, ahap, android, hjif, wav, png and gltf"
+    );
+    let error = Coding::find("tones").unwrap_err().to_string();
+    assert_eq!(error, "there is no coding `tones`; there are vectorial and wavelet");
+    assert_eq!(Coding::find("wavelet").unwrap(), Coding::Wavelet);
 }
 
 /// A second of a sine at half of full scale.

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use htex::model::Registry;
+use htex::play::ErrorKind;
 use htex_author::settings::{FitSettings, Metadata};
+use htex_c::htex_status::*;
 use htex_exchange::{
     ExchangeError, FORMATS, Format, Import, ImportedAsset, MOST_BYTES, Missing, PROFILES, Physical,
     Profile, Reads, missing,
@@ -13,6 +15,7 @@ use serde::Serialize;
 
 use super::TOOL;
 use super::describe::{self, DescribedNotice};
+use super::export::ExportSummary;
 use super::made::quantity;
 use super::progress;
 use super::represented::{Model, ranked, represented};
@@ -41,6 +44,7 @@ fn named(setting: &str) -> &str {
 #[derive(Serialize)]
 struct Formats<'a> {
     formats: Vec<FormatSummary<'a>>,
+    exports: Vec<ExportSummary<'a>>,
     profiles: Vec<Range<'a>>,
 }
 
@@ -77,7 +81,7 @@ struct Range<'a> {
     high_hz: f64,
 }
 
-/// Describes the formats that can be imported, and the actuators.
+/// Describes the formats that can be imported and exported, and the actuators.
 pub(crate) fn formats(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     call.finish()?;
     let range = |profile: &'static Profile| Range {
@@ -88,6 +92,7 @@ pub(crate) fn formats(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     };
     let told = Formats {
         formats: FORMATS.iter().filter_map(described).collect(),
+        exports: FORMATS.iter().filter_map(ExportSummary::new).collect(),
         profiles: PROFILES.iter().map(range).collect(),
     };
     Answer::new(&told, Vec::new())
@@ -213,17 +218,25 @@ impl<'a> Report<'a> {
 impl Refusal {
     /// An error for a file that does not follow its own format.
     fn file(error: impl ToString) -> Self {
-        let status = htex_c::htex_status::HTEX_STATUS_INVALID_ARGUMENT;
-        Self::new(status, "invalid-file", error)
+        Self::new(HTEX_STATUS_INVALID_ARGUMENT, "invalid-file", error)
+    }
+}
+
+/// Converts an error. `named` converts the keyword of a setting to its name in JavaScript.
+pub(super) fn refusal(error: ExchangeError, named: fn(&str) -> &str) -> Refusal {
+    match error {
+        ExchangeError::Author(error) => error.into(),
+        ExchangeError::File { .. } => Refusal::file(error),
+        ExchangeError::Play(error) if error.kind() == ErrorKind::NoModel => {
+            Refusal::new(HTEX_STATUS_NO_MODEL, "no-model", error)
+        }
+        ExchangeError::Play(error) => error.into(),
+        other => Refusal::argument(other.message_with(&|setting| named(setting).to_owned())),
     }
 }
 
 impl From<ExchangeError> for Refusal {
     fn from(error: ExchangeError) -> Self {
-        match error {
-            ExchangeError::Author(error) => error.into(),
-            ExchangeError::File { .. } => Self::file(error),
-            other => Self::argument(other.message_with(&|setting| named(setting).to_owned())),
-        }
+        refusal(error, named)
     }
 }

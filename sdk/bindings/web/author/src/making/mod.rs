@@ -2,6 +2,8 @@
 
 mod bake;
 mod describe;
+#[cfg(feature = "import")]
+mod export;
 mod felt;
 mod fit;
 #[cfg(feature = "import")]
@@ -38,10 +40,14 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("validate", validate::validate),
 ];
 
-/// Functions that make textures from files of other formats.
+/// Functions that make textures from files of other formats, and such files from textures.
 #[cfg(feature = "import")]
-pub(crate) const IMPORTS: &[(&str, Function)] =
-    &[("asks", import::asks), ("formats", import::formats), ("import", import::import)];
+pub(crate) const EXCHANGE: &[(&str, Function)] = &[
+    ("asks", import::asks),
+    ("export", export::export),
+    ("formats", import::formats),
+    ("import", import::import),
+];
 
 /// Program and version for the provenance of assets. It is the same text that the command writes.
 const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));

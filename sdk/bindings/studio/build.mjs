@@ -8,7 +8,6 @@ import { createHash } from "node:crypto";
 import { mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
-import { gzipSync } from "node:zlib";
 import { build } from "vite";
 
 import { digest, policy, withPolicy } from "./parts.mjs";
@@ -59,7 +58,7 @@ async function buildStatic() {
 
 /** A module as text that runs nothing: compressed, since a page is read as a whole. */
 async function block(name) {
-  const text = gzipSync(await readFile(path.join(here, ".htex", name)), { level: 9 }).toString("base64");
+  const text = await readFile(path.join(here, ".htex", `${name}.gz`), "base64");
   return `<script type="application/octet-stream" id="${name}">${text}</script>\n    `;
 }
 
@@ -88,7 +87,6 @@ async function buildSingle() {
   const icon = Buffer.from(await read("icon.svg")).toString("base64");
   html = html.replace(scriptTag, "").replace(styleTag, () => `<style>${css}</style>`);
   html = html.replace(iconTag, `<link rel="icon" href="data:image/svg+xml;base64,${icon}" />`);
-  // The module of imports holds the author module.
   const blocks = await Promise.all(["htex.wasm", "htex-import.wasm"].map(block));
   html = html.replace("</body>", () => `${blocks.join("")}<script type="module">${code}</script>\n  </body>`);
   const single = policy({

@@ -18,6 +18,12 @@ const touch = matchMedia("(hover: none) and (pointer: coarse)");
 export const isTouch = signal(touch.matches);
 touch.addEventListener("change", () => (isTouch.value = touch.matches));
 
+const narrow = matchMedia("(max-width: 599px)");
+
+/** Whether the window is as narrow as a phone held upright. */
+export const isNarrow = signal(narrow.matches);
+narrow.addEventListener("change", () => (isNarrow.value = narrow.matches));
+
 /** Red, green and blue, 0 to 255. */
 export type Colour = readonly [number, number, number];
 

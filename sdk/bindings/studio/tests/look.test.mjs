@@ -273,9 +273,9 @@ test("the player page shows the texture lit, and its light moves", async () => {
 /** Makes a library of 2,000 textures in a page. */
 async function makeLibrary() {
   const page = await openStudio(browser, FILE);
-  await page.evaluate(() => htexStudio.setMacro("level", 0)).catch(() => {});
   await goTo(page, "Save");
   await page.waitForFunction(() => htexStudio.author.value);
+  const source = Array.from(await bytesOf(page));
   const { bytes } = await saved(page, () =>
     page.evaluate((source) => {
       const author = htexStudio.author.value;
@@ -289,7 +289,7 @@ async function makeLibrary() {
       }
       const href = URL.createObjectURL(new Blob([author.library(textures)]));
       Object.assign(document.createElement("a"), { href, download: "big.htexlib" }).click();
-    }, Array.from(await bytesOf(page))),
+    }, source),
   );
   await page.context().close();
   await writeFile(file("big.htexlib"), bytes);

@@ -204,7 +204,7 @@ test("swapping leaves no click and no gap, and a change of the level is heard", 
   await load(page, "Oak");
   await version(page, "B").click();
   await shaping(page);
-  const level = page.getByRole("main").getByRole("slider", { name: "Level" });
+  const level = page.getByRole("slider", { name: "Level" });
   await level.focus();
   await page.keyboard.press("Home");
   const db = await page.evaluate(() => 20 * Math.log10(htexStudio.texture.value.manifest.representations[0].at[0].level_rms));
@@ -602,7 +602,8 @@ for (const colorScheme of ["light", "dark"]) {
       const file = await saved(page, () => page.getByRole("button", { name: `Save as ${type}` }).click());
       assert.equal(file.name, `oak-code.${type.toLowerCase()}`);
       if (type === "SVG") {
-        await empty.evaluate((text) => document.body.replaceChildren(Object.assign(new Image(700), { src: `data:image/svg+xml,${encodeURIComponent(text)}` })), file.bytes.toString());
+        const show = ([text, width]) => document.body.replaceChildren(Object.assign(new Image(width), { src: `data:image/svg+xml,${encodeURIComponent(text)}` }));
+        await empty.evaluate(show, [file.bytes.toString(), 6 * size]);
         file.bytes = await empty.locator("img").screenshot();
       }
       assert.equal((await decoded(empty, file.bytes)).text, whole.text, type);

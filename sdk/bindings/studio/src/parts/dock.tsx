@@ -9,12 +9,13 @@ import { audible, heard, isRunning, sound, volume, wake } from "../engine.ts";
 import { pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
 import { coverage, shownFinger, sounding } from "../shadow.ts";
 import { speak } from "../spoken.ts";
-import { isTouch } from "../theme.ts";
+import { isNarrow, isTouch } from "../theme.ts";
 import { Hint, hinted } from "./hint.tsx";
 import { Icon } from "./icons.tsx";
 import { Knobs } from "./knobs.tsx";
 import { Pad } from "./pad.tsx";
 import { Slider } from "./slider.tsx";
+import { Versions } from "./versions.tsx";
 
 /** Whether a small window shows the controls instead of the pad. Large windows show both. */
 const hasControls = signal(false);
@@ -53,6 +54,7 @@ function Readings() {
           </dd>
         </div>
       </dl>
+      {isNarrow.value && <Versions />}
       <div class="dock-quick">
         <button class="toggle dock-back" aria-pressed={pilot.value !== "hand"} onClick={() => (wake(), setPilot(pilot.peek() === "hand" ? "to-and-fro" : "hand"))}>
           Back and forth

@@ -2,29 +2,15 @@
 
 import { isBlind } from "../comparing.ts";
 import { audible, sound, toggleSound, volume } from "../engine.ts";
-import { depth, fail, origin, present, redo, redoable, screen, undo, undoable } from "../state.ts";
+import { depth, origin, present, screen } from "../state.ts";
 import { refusal } from "../store.ts";
-import { isTouch } from "../theme.ts";
+import { isNarrow, isTouch } from "../theme.ts";
 import { FeelOn } from "./feel-on.tsx";
 import { hinted } from "./hint.tsx";
 import { Icon } from "./icons.tsx";
 import { Name } from "./name.tsx";
-import { Slots } from "./slots.tsx";
-import { Strip, StripButton } from "./strip.tsx";
-
-function History() {
-  const [undoKeys, redoKeys] = isTouch.value ? ["", ""] : [" (Ctrl Z)", " (Ctrl Shift Z)"];
-  return (
-    <div class="group">
-      <button class="icon-button" disabled={!undoable.value} title={undoable.value ? `Undo: ${undoable.value}${undoKeys}` : "Nothing to undo"} aria-label="Undo" onClick={() => undo().catch(fail)}>
-        <Icon name="undo" />
-      </button>
-      <button class="icon-button" disabled={!redoable.value} title={redoable.value ? `Redo: ${redoable.value}${redoKeys}` : "Nothing to redo"} aria-label="Redo" onClick={() => redo().catch(fail)}>
-        <Icon name="redo" />
-      </button>
-    </div>
-  );
-}
+import { Strip } from "./strip.tsx";
+import { Versions } from "./versions.tsx";
 
 function Sound() {
   const isOn = sound.value === "on";
@@ -57,11 +43,7 @@ export function Top() {
         {present.value && origin.value && present.value.bytes !== origin.value.bytes && <small> · edited</small>}
         {refusal.value && <small title={refusal.value}> · not stored</small>}
       </span>
-      <div class="versions">
-        <History />
-        <Slots />
-        <StripButton />
-      </div>
+      {!isNarrow.value && <Versions />}
       <Sound />
       <FeelOn />
       <button class={hinted.value === "keep" ? "toggle roomy hinted" : "toggle roomy"} title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>

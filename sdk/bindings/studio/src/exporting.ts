@@ -22,7 +22,7 @@ const USES: Record<string, string> = {
 export type Choices = Pick<ExportSettings, "speed_mm_s" | "force_n" | "seconds" | "profile" | "rate_hz" | "coding" | "extension">;
 
 /** A file that was saved. */
-interface Saved {
+export interface Saved {
   readonly file: string;
   readonly length: number;
   readonly report: ExportReport;

@@ -85,7 +85,7 @@ for (const [way, address] of [["the file", () => FILE], ["the folder", () => ser
       const own = await exported(page, to, extension, flags);
       assert.equal(name, `hum.${extension}`);
       assert.ok(bytes.equals(own.bytes), `${to}: other bytes`);
-      const told = form(page).getByRole("status");
+      const told = form(page).locator(".exported");
       await told.getByText(`hum.${extension} is saved: ${bytes.length} bytes`).waitFor();
       const text = await told.innerText();
       for (const part of [own.report.loses, own.report.rights, ...own.report.notes]) assert.ok(text.includes(part), `${to}: ${part} is not in ${text}`);
@@ -135,7 +135,7 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
     await page.keyboard.press("Enter");
     await save(page).focus();
     assert.equal((await saved(page, () => page.keyboard.press("Enter"))).name, "hum.ahap");
-    await form(page).getByRole("status").waitFor();
+    await form(page).locator(".exported").waitFor();
     await page.evaluate(AXE);
     await page.waitForTimeout(400);
     const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));

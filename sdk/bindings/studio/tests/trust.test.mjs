@@ -3,7 +3,6 @@
 // raises no alarm, and a change of pitch leaves no gap.
 
 import assert from "node:assert/strict";
-import { createHash } from "node:crypto";
 import { copyFile, mkdtemp, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -25,7 +24,6 @@ async function closed(page) {
   await page.context().close();
 }
 
-const digest = (data) => createHash("sha256").update(data).digest("hex");
 
 /** A model file of the Haptic Texture Toolkit: at each speed and force a resonance. */
 async function modelFile(name, nodes) {
@@ -167,17 +165,30 @@ async function spoken(page, session) {
 /** The visible page without the count of answers and, while the finger slides, without the pad. */
 function seen(page, isSliding) {
   const mask = [page.getByText(/of 10 answered/), ...(isSliding ? [page.locator(".pad canvas")] : [])];
-  return page.screenshot({ mask, animations: "disabled" }).then(digest);
+  return page.screenshot({ mask, animations: "disabled" });
 }
 
 /** As `seen`, once the page stands still: a busy machine draws late. */
 async function settled(page, isSliding) {
   for (let before = null; ; ) {
     const now = await seen(page, isSliding);
-    if (now === before) return now;
+    if (before?.equals(now)) return now;
     before = now;
     await page.waitForTimeout(300);
   }
+}
+
+/** The largest difference of two pictures, of 255. The edges of what is drawn again may differ by 1. */
+function difference(page, pictures) {
+  return page.evaluate(async (texts) => {
+    const [a, b] = await Promise.all(texts.map(async (text) => {
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (one) => one.charCodeAt(0))], { type: "image/png" }));
+      const pen = new OffscreenCanvas(image.width, image.height).getContext("2d");
+      pen.drawImage(image, 0, 0);
+      return pen.getImageData(0, 0, image.width, image.height).data;
+    }));
+    return a.reduce((most, value, i) => Math.max(most, Math.abs(value - b[i])), 0);
+  }, pictures.map((picture) => picture.toString("base64")));
 }
 
 /** Part of the pad that is painted. */
@@ -225,7 +236,7 @@ for (const [way, options] of [["on a wide screen", {}], ["on a phone", { viewpor
       const all = views.map((view, i) => ({ ...view, x: x[i] })).filter((view, i) => view.isSliding === isSliding && i > 0);
       assert.equal(new Set(all.map((view) => view.x)).size, 2);
       assert.equal(new Set(all.map((view) => view.words)).size, 1, `what is spoken differs while the finger ${isSliding ? "slides" : "rests"}`);
-      assert.equal(new Set(all.map((view) => view.looks)).size, 1, `what is seen differs while the finger ${isSliding ? "slides" : "rests"}`);
+      for (const { looks } of all) assert.ok((await difference(page, [all[0].looks, looks])) <= 1, `what is seen differs while the finger ${isSliding ? "slides" : "rests"}`);
       for (const { part } of all) assert.ok(part < (isSliding ? 0.4 : 1e-9), `${part} of the pad is painted`);
     }
     await closed(page);

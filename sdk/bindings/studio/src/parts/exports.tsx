@@ -3,11 +3,12 @@
 
 import type { ExportFormat } from "htex/import";
 
-import { actuators, choices, choose, chosen, formats, isExporting, readFormats, saved, saveExport, set, useOf } from "../exporting.ts";
+import { actuators, choices, choose, chosen, formats, isExporting, readFormats, saved, saveExport, set, useOf, type Saved } from "../exporting.ts";
 import { fail } from "../state.ts";
 import { words } from "./difference.tsx";
 import { Notices } from "./notices.tsx";
 import { NumberField } from "./number-field.tsx";
+import { useSpoken } from "./spoken.tsx";
 
 /** Settings that are numbers: name, label, and the default in words. */
 const NUMBERS: readonly ["speed_mm_s" | "force_n" | "seconds" | "rate_hz", string, string][] = [
@@ -80,14 +81,12 @@ function Fields({ format: { settings, extensions, profile } }: { format: ExportF
   );
 }
 
-function SavedFile() {
-  const now = saved.value;
-  if (!now) return null;
-  const { file, length, report } = now;
+function SavedFile({ file, length, report }: Saved) {
   const { loses, lost, rights, limited = 0, notes, profile, seconds } = report;
+  useSpoken(`${file} is saved.`);
   const actuator = actuators.value.find(({ name }) => name === profile);
   return (
-    <div class="stack small" role="status">
+    <div class="stack small exported">
       <p>
         <b>{file}</b> is saved: {length} bytes{actuator && `, ${seconds} s for: ${actuator.title}`}. {rights}
       </p>
@@ -126,10 +125,10 @@ export function Exports({ first }: { first: () => Promise<void> }) {
             </button>
             <span class="small soft">Nobody has played these files yet. The losses are computed with a model of the actuator.</span>
           </div>
-          <SavedFile />
+          {saved.value && <SavedFile {...saved.value} />}
         </form>
       ) : (
-        <p role="status">Reading the formats…</p>
+        <p>Reading the formats…</p>
       )}
     </details>
   );

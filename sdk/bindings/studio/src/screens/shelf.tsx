@@ -70,8 +70,8 @@ function Files() {
   );
 }
 
-/** Cards that are there at once, and that are added where the end of them comes near. */
-const PORTION = 36;
+/** Cards that are there at once, which are more than the studio brings along, and that are added where the end of them comes near. */
+const PORTION = 48;
 const shown = signal(PORTION);
 /** How near, in CSS pixels. */
 const NEAR_PX = 800;

@@ -89,9 +89,10 @@ impl Edit {
 /// Reads `com.vendor.NAME/1=FILE`. Without the file, the extension is removed.
 fn named_file(argument: &str) -> Result<(String, Option<PathBuf>)> {
     let named = argument.split_once('=');
-    let (name, file) = named.filter(|(name, _)| htex_format::is_extension_name(name)).ok_or_else(
-        || Failure::Usage(format!("--extension {argument}: it looks like com.vendor.NAME/1=FILE")),
-    )?;
+    let (name, file) =
+        named.filter(|(name, _)| htex_format::is_extension_name(name)).ok_or_else(|| {
+            Failure::Usage(format!("--extension {argument}: give com.vendor.NAME/1=FILE"))
+        })?;
     Ok((name.to_owned(), Some(PathBuf::from(file)).filter(|_| !file.is_empty())))
 }
 

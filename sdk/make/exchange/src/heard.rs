@@ -13,9 +13,9 @@ use crate::stroke::Stroke;
 
 /// Number of bands in the envelope.
 pub(crate) const BANDS: usize = 14;
-/// Largest number of samples of an export. The memory of a machine of 32 bits, such as a WASM
-/// module, holds no more.
-const MOST_SAMPLES: usize = if usize::BITS < 64 { 1 << 24 } else { usize::MAX };
+/// Largest number of samples of an export on a machine of 32 bits, such as a WASM module, whose
+/// memory holds no more.
+const MOST_SAMPLES: usize = 1 << 24;
 /// Time that is played before the first exported sample, so that the analysis windows are full,
 /// seconds.
 const BEFORE_S: f64 = 0.2;
@@ -148,7 +148,7 @@ impl Playing<'_> {
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {
         let (quantity, band) = (self.source.quantity(), self.source.band());
         let len = libm::round(self.seconds * rate_hz).max(1.0) as usize;
-        if len > MOST_SAMPLES {
+        if usize::BITS < 64 && len > MOST_SAMPLES {
             let range = "at this sample rate, so many samples do not fit into the memory";
             return Err(ExchangeError::OutOfRange { name: "seconds", value: self.seconds, range });
         }

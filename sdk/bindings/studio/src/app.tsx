@@ -117,7 +117,7 @@ export function App() {
   useEffect(() => {
     place.current?.scrollTo(0, 0);
     // The keyboard goes on in the screen that was opened.
-    if (!isFirst.current) place.current?.focus({ preventScroll: true });
+    if (!isFirst.current && !place.current?.contains(document.activeElement)) place.current?.focus({ preventScroll: true });
     isFirst.current = false;
   }, [screen.value]);
   return (

@@ -14,7 +14,7 @@ function beyond({ kind, asked = 0, recorded = 0 }: Told["speed"], less: string, 
 /** How a motion is played, in a sentence. */
 export function coverageText({ kind, speed, force, frequencyFactor, levelFactor }: Told): string {
   if (kind === "silent") return "The finger rests, so nothing plays.";
-  if (kind !== "outside") return "It plays as it was recorded or made.";
+  if (kind !== "outside") return "This speed and force are within the recorded range.";
   const ways = [beyond(speed, "slower", "faster"), beyond(force, "lighter", "harder")].filter(Boolean);
   const db = 20 * Math.log10(Math.max(levelFactor, 1e-6));
   const level = Math.abs(db) < LEAST_DB ? "" : `${Math.abs(db).toFixed(1)} dB ${db > 0 ? "stronger" : "weaker"}`;

@@ -1,6 +1,6 @@
 // Saving and sharing: the file with its name and licence, the shelf, a link, a player page, sound and a block for microcontrollers.
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 
 import playerAddress from "virtual:player";
 import { compressedLibrary, plainBase64 } from "./modules.ts";
@@ -12,7 +12,7 @@ import { isolated } from "./names.ts";
 import { add, lostText } from "./shelf.ts";
 import { pilotForce, pilotSpeed } from "./motion.ts";
 import type { PlayerOptions } from "./player/options.ts";
-import { edit, present, say, settle, texture } from "./state.ts";
+import { edit, origin, present, say, screen, settle, texture } from "./state.ts";
 
 export interface Label {
   readonly name: string;
@@ -65,11 +65,37 @@ export async function complete() {
   settle();
 }
 
+/** What was last saved as a file or kept on the shelf. */
+const savedBytes = signal<Uint8Array | null>(null);
+
+/** Whether the texture was changed since it was opened or saved. */
+export const isUnsaved = computed(() => {
+  const bytes = present.value?.bytes;
+  return bytes !== origin.value?.bytes && bytes !== savedBytes.value;
+});
+
+/** Whether the large button waits for the keyboard. */
+let isAsked = false;
+
+/** Opens the screen *Save*, where the keyboard goes on at the large button. */
+export function toSave() {
+  isAsked = true;
+  screen.value = "give";
+}
+
+/** Gives the large button the keyboard, if it waits for it. */
+export function takeFocus(button: HTMLElement | null) {
+  if (!button || !isAsked) return;
+  isAsked = false;
+  button.focus({ preventScroll: true });
+}
+
 export function saveTexture() {
   const document = present.peek();
   if (!document) return;
   const file = fileName(document.name, "htex");
   save(document.bytes, file, "application/octet-stream");
+  savedBytes.value = document.bytes;
   finish("keep");
   say(`${file} is saved, ${document.bytes.length} bytes.`, "good");
 }
@@ -78,6 +104,7 @@ export async function keepOnShelf() {
   const document = present.peek();
   if (!document) return;
   const added = await add(document.bytes);
+  savedBytes.value = document.bytes;
   finish("keep");
   const lost = lostText([added]);
   say(`${isolated(added.name)} is on the shelf${lost ? `. ${lost}` : ", on this device."}`, lost ? "bad" : "good");

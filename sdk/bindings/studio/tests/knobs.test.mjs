@@ -124,14 +124,17 @@ test("make this rougher and keep it: by keys alone", async () => {
   for (let i = 0; i < 14; i++) await page.keyboard.press("ArrowUp");
   await isHeard(page);
   assert.ok(Math.abs((await valueOf(page, "Rougher")) - 0.7) < 1e-6);
-  assert.ok((await tabTo(page, "Save it", { key: "Shift+Tab" })) <= 2);
+  assert.ok((await tabTo(page, "Save it…", { key: "Shift+Tab" })) <= 2);
   await page.keyboard.press("Enter");
   await page.getByRole("heading", { name: "Save" }).waitFor();
-  await tabTo(page, "Name");
+  await page.waitForFunction(() => document.activeElement.textContent.trim() === "Save .htex");
+  await tabTo(page, "Name", { key: "Shift+Tab" });
   await page.keyboard.press("ControlOrMeta+a");
   await page.keyboard.type("My rough one");
   await tabTo(page, "Save .htex");
+  await page.locator(".piece", { hasText: "edited" }).waitFor();
   await assertRougher(page, await saved(page, () => page.keyboard.press("Enter")), first);
+  await page.locator(".piece", { hasText: "edited" }).waitFor({ state: "detached" });
   await closed(page);
 });
 

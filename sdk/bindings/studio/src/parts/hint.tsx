@@ -4,7 +4,9 @@ import { computed } from "@preact/signals";
 
 import { isBlind } from "../comparing.ts";
 import { done, finish } from "../first-steps.ts";
+import { toSave } from "../giving.ts";
 import { origin, present, screen } from "../state.ts";
+import { isTouch } from "../theme.ts";
 import { Icon } from "./icons.tsx";
 
 const isEdited = computed(() => present.value !== null && present.value.bytes !== origin.value?.bytes);
@@ -22,12 +24,12 @@ export function Hint() {
   return (
     <div class="first-hint">
       {step === "change" ? (
-        <p>Drag a knob up or down to change what you feel.</p>
+        <p>Drag a knob up or down{!isTouch.value && ", or turn it with the arrow keys,"} to change what you feel.</p>
       ) : (
         <p>
           Do you like it?
-          <button class="button" onClick={() => (screen.value = "give")}>
-            Save it
+          <button class="button" onClick={toSave}>
+            Save it…
           </button>
         </p>
       )}

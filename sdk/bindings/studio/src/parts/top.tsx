@@ -2,7 +2,8 @@
 
 import { isBlind } from "../comparing.ts";
 import { audible, sound, toggleSound, volume } from "../engine.ts";
-import { depth, origin, present, screen } from "../state.ts";
+import { isUnsaved, toSave } from "../giving.ts";
+import { depth, present } from "../state.ts";
 import { refusal } from "../store.ts";
 import { isNarrow, isTouch } from "../theme.ts";
 import { FeelOn } from "./feel-on.tsx";
@@ -40,13 +41,13 @@ export function Top() {
       </span>
       <span class="piece" title={present.value ? `${depth.value} steps can be undone` : ""}>
         {present.value ? <Name>{present.value.name}</Name> : "…"}
-        {present.value && origin.value && present.value.bytes !== origin.value.bytes && <small> · edited</small>}
+        {present.value && isUnsaved.value && <small> · edited</small>}
         {refusal.value && <small title={refusal.value}> · not stored</small>}
       </span>
       {!isNarrow.value && <Versions />}
       <Sound />
       <FeelOn />
-      <button class={hinted.value === "keep" ? "toggle roomy hinted" : "toggle roomy"} title="Give it a name and save it as a file" onClick={() => (screen.value = "give")}>
+      <button class={hinted.value === "keep" ? "toggle roomy hinted" : "toggle roomy"} title="Give it a name and save it as a file" onClick={toSave}>
         <Icon name="give" /> Save…
       </button>
       <Strip />

@@ -1,17 +1,23 @@
 // Save: name the texture, then save it as a file, keep it on the shelf, or share it.
 
+import { computed } from "@preact/signals";
+
 import { theAuthor, author } from "../author.ts";
-import { complete, copyLink, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, write, type Label } from "../giving.ts";
+import { complete, copyLink, isUnsaved, keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, SOUND_S, takeFocus, write, type Label } from "../giving.ts";
 import { Appearance } from "../parts/appearance.tsx";
 import { Exports } from "../parts/exports.tsx";
+import { documents } from "../history.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Qr } from "../parts/qr.tsx";
 import { TextField } from "../parts/text-field.tsx";
 import { fileName } from "../save.ts";
-import { fail, present, say, settle } from "../state.ts";
+import { fail, history, origin, present, say, settle } from "../state.ts";
 import { webPage } from "../web-snippet.ts";
 
 const LICENCES = ["CC0-1.0", "CC-BY-4.0", "CC-BY-SA-4.0", "CC-BY-NC-4.0", "MIT"];
+
+/** The name of the texture that was opened. */
+const openedName = computed(() => documents(history.value).find(({ id }) => id === origin.value?.id)?.name);
 
 /** Completes the label, and then does something with the texture. */
 const after = (then: () => unknown) => () => complete().then(then).catch(fail);
@@ -23,6 +29,7 @@ function LabelForm() {
   return (
     <div class="panel stack save-label">
       <TextField label="Name" isRequired value={name} {...field("name")} />
+      {isUnsaved.value && name === openedName.value && <p class="small soft">The texture that you opened has the same name. Another name tells them apart.</p>}
       <TextField label="Licence" list="licences" value={license} {...field("license")} />
       <datalist id="licences">
         {LICENCES.map((one) => (
@@ -53,7 +60,7 @@ function Report() {
 function Actions() {
   return (
     <div class="save-actions">
-      <button class="button strong" onClick={after(saveTexture)}>
+      <button class="button strong" ref={takeFocus} onClick={after(saveTexture)}>
         <Icon name="give" />
         <span>
           Save <small>.htex</small>
@@ -62,6 +69,7 @@ function Actions() {
       <button class="button" onClick={after(keepOnShelf)}>
         Keep on the shelf
       </button>
+      <p class="small soft">Only this browser has the shelf. A file works in every program that plays htex.</p>
     </div>
   );
 }

@@ -49,8 +49,10 @@ effect(() => {
 function step(edited: Texture, kept: string, change: string, gesture: string | null) {
   const gone = texture.peek()?.models.filter((id) => id !== kept) ?? [];
   edit({ texture: edited, bytes: edited.toBytes(), model: kept, change }, gesture);
+  // Who changes it hears it.
+  finish("touch");
   finish("change");
-  if (gone.length > 0) say(`The edit kept only one model: ${titleOf(kept)}. Undo brings back the others.`);
+  if (gone.length > 0) say(`The texture now has one model: ${titleOf(kept)}. Undo brings back the others.`);
 }
 
 function take(what: Spec, change: string, gesture: string | null) {

@@ -324,7 +324,7 @@ test("an edit says that it drops the other models, before and after", async () =
   await page.mouse.down();
   await page.mouse.move(chart.x + chart.width / 2, chart.y + chart.height / 3, { steps: 4 });
   await page.mouse.up();
-  await page.getByRole("status").getByText(/kept only/).waitFor();
+  await page.getByRole("status").getByText(/now has one model/).waitFor();
   await warning.waitFor({ state: "detached" });
   await page.keyboard.press("Control+z");
   await warning.waitFor();

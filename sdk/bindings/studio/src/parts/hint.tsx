@@ -24,7 +24,7 @@ export function Hint() {
   return (
     <div class="first-hint">
       {step === "change" ? (
-        <p>Drag a knob up or down{!isTouch.value && ", or turn it with the arrow keys,"} to change what you feel.</p>
+        <p>{isTouch.value ? "Drag a knob up or down to change what you feel." : "Drag a knob up or down, or use its arrow keys."}</p>
       ) : (
         <p>
           Do you like it?

@@ -70,16 +70,16 @@ function Files() {
   );
 }
 
-/** Cards that are there at once, which are more than the studio brings along, and that are added where the end of them comes near. */
-const PORTION = 48;
-const shown = signal(PORTION);
+/** Cards that are there at once, which are more than the studio brings along, and cards that are added where the end comes near. */
+const [FIRST, MORE] = [48, 16];
+const shown = signal(FIRST);
 /** How near, in CSS pixels. */
 const NEAR_PX = 800;
 
 /** Another search begins with its first cards. */
 function narrow(change: () => void) {
   batch(() => {
-    shown.value = PORTION;
+    shown.value = FIRST;
     change();
   });
 }
@@ -91,7 +91,7 @@ function Cards() {
   useEffect(() => {
     const element = end.current;
     if (!element) return;
-    const more = (seen: IntersectionObserverEntry[]) => seen.some(({ isIntersecting }) => isIntersecting) && (shown.value = count + PORTION);
+    const more = (seen: IntersectionObserverEntry[]) => seen.some(({ isIntersecting }) => isIntersecting) && (shown.value = count + MORE);
     const observer = new IntersectionObserver(more, { root: element.closest(".screen"), rootMargin: `${NEAR_PX}px` });
     observer.observe(element);
     return () => observer.disconnect();
@@ -126,7 +126,7 @@ function Tags() {
 export function Shelf() {
   const leave = () => {
     endAudition();
-    shown.value = PORTION;
+    shown.value = FIRST;
   };
   useEffect(() => leave, []);
   return (

@@ -77,9 +77,10 @@ async function screens(page, suffix) {
 async function way(page) {
   await shot(page, "way-1-opened");
   const pad = await page.locator(".pad canvas").boundingBox();
-  await page.mouse.move(pad.x + 80, pad.y + 200);
+  const [x, y] = [pad.x + 0.25 * pad.width, pad.y + 0.4 * pad.height];
+  await page.mouse.move(x, y);
   await page.mouse.down();
-  for (let i = 0; i < 20; i++) await page.mouse.move(pad.x + 80 + 8 * i, pad.y + 200 + 2 * i);
+  for (let i = 0; i < 20; i++) await page.mouse.move(x + 0.02 * i * pad.width, y + 0.01 * i * pad.height);
   await page.screenshot({ path: path.join(out, "way-2-touched.png") });
   await page.mouse.up();
   await page.getByRole("button", { name: /^Denim/ }).click();

@@ -8,8 +8,8 @@ use htex::model::Band;
 use htex::model::Registry;
 use htex_author::by_hand::{self, ByHandAt, ByHandModel, ByHandModels, MixedAsset};
 use htex_author::settings::Metadata;
-use htex_format::{Asset, Condition};
-use serde_json::Value;
+use htex_format::{Asset, Condition, is_extension_name};
+use serde_json::{Map, Value};
 
 use super::TOOL;
 use crate::answer::{Answer, Files};
@@ -21,6 +21,17 @@ fn metadata(mut given: Document) -> Result<Metadata, Refusal> {
     given.finish()?;
     metadata.check()?;
     Ok(metadata)
+}
+
+/// Takes the extensions that are set, and those that are removed by `null`.
+fn extensions(call: &mut Document) -> Result<Map<String, Value>, Refusal> {
+    let given = call.map("extensions")?;
+    match given.keys().find(|name| !is_extension_name(name)) {
+        None => Ok(given),
+        Some(name) => Err(Refusal::argument(format!(
+            "the extension {name}: give a name such as com.vendor.NAME/1"
+        ))),
+    }
 }
 
 fn answer(asset: &Asset) -> Result<Answer, Refusal> {
@@ -38,7 +49,7 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     let quantity = quantity(call.text("quantity")?)?;
     let band = band(&call.list("band")?)?;
     let metadata = metadata(call.object("metadata")?)?;
-    let extensions = call.map("extensions")?;
+    let extensions = extensions(&mut call)?;
     call.finish()?;
     let name = metadata.name.clone();
     let mut asset = by_hand::make_all(&ByHandModels {
@@ -115,7 +126,7 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let weight = call.number("weight")?;
     let weight = weight.ok_or_else(|| Refusal::argument("give a weight from 0 to 1"))?;
     let metadata = metadata(call.object("metadata")?)?;
-    let extensions = call.map("extensions")?;
+    let extensions = extensions(&mut call)?;
     call.finish()?;
     let [a, b] = files else {
         return Err(Refusal::argument("give two textures"));
@@ -145,7 +156,7 @@ fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
 /// are the asset.
 pub(crate) fn edit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let metadata = metadata(call.object("metadata")?)?;
-    let extensions = call.map("extensions")?;
+    let extensions = extensions(&mut call)?;
     call.finish()?;
     if metadata.is_empty() && extensions.is_empty() {
         let sentence = "nothing to change: give at least one of the metadata, such as author";

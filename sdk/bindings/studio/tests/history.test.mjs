@@ -9,7 +9,7 @@ import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-import { FILE, HTEX_CHROMIUM, SCREENS, bytesOf, goTo, htex, launch, openStudio, ready, saved, serve, shaping } from "./studio.mjs";
+import { FILE, HTEX_CHROMIUM, SCREENS, bytesOf, goTo, htex, launch, openStudio, ready, saved, serve, shaping, thorough } from "./studio.mjs";
 
 let browser, server, folder;
 
@@ -299,7 +299,7 @@ function storedBytes(page) {
   });
 }
 
-test("the history is bounded in bytes", async () => {
+thorough("the history is bounded in bytes", async () => {
   const page = await openStudio(browser, server.address);
   await shaping(page);
   // Files of two megabytes each: the description cannot be compressed.

@@ -9,7 +9,7 @@ import path from "node:path";
 import test, { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, SCREENS, bytesOf, frames, goTo, htex, isWhole, launch, openStudio, ready, saved, serve, shaping, swipe } from "./studio.mjs";
+import { FILE, SCREENS, bytesOf, frames, goTo, htex, isWhole, launch, openStudio, ready, saved, serve, shaping, swipe, thorough } from "./studio.mjs";
 
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -199,7 +199,7 @@ test("a ghost slides silently on a first visit, until the first press; it change
   await closed(page);
 });
 
-test("there is no ghost if less motion is wanted, and it stops by itself", async () => {
+thorough("there is no ghost if less motion is wanted, and it stops by itself", async () => {
   const calm = await openStudio(browser, FILE, { reducedMotion: "reduce" });
   await painted(calm);
   assert.equal(await isAlive(calm), false);
@@ -250,7 +250,7 @@ test("each hint is closed when it was done or dismissed, and does not come again
   await closed(page);
 });
 
-test("in a small window, a message comes before a hint", async () => {
+thorough("in a small window, a message comes before a hint", async () => {
   const page = await openStudio(browser, FILE, { viewport: { width: 720, height: 450 } });
   await page.getByRole("button", { name: /^Corduroy/ }).click();
   await page.getByText("Corduroy is on the pad").waitFor();

@@ -9,7 +9,7 @@ import path from "node:path";
 import test, { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, bytesOf, dropPaths, frames, goTo, htex, launch, openStudio, ready, saved, serve, shaping } from "./studio.mjs";
+import { FILE, bytesOf, dropPaths, frames, goTo, htex, launch, openStudio, ready, saved, serve, shaping, thorough } from "./studio.mjs";
 
 const APPEARANCE = "org.htex.appearance/1";
 const WOOD = { hue_deg: 28, saturation: 0.5, lightness: 0.4, gloss: 0.2, relief: 0.5, pattern: "fibres" };
@@ -313,7 +313,7 @@ const listen = () => {
   new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => window.tasks.push(Math.round(duration)))).observe({ type: "longtask" });
 };
 
-test("2,000 cards are painted as they come, and give their memory back", async (t) => {
+thorough("2,000 cards are painted as they come, and give their memory back", async (t) => {
   const library = await makeLibrary();
   const page = await openStudio(browser, FILE, { init: listen });
   await page.waitForTimeout(500);

@@ -11,7 +11,7 @@ import test, { after, before } from "node:test";
 
 import puppeteer from "puppeteer-core";
 
-import { FILE, HTEX_FIREFOX, bytesOf, dropPaths, goTo, htex, launch, openStudio, ready, saved, serve, shaping } from "./studio.mjs";
+import { FILE, HTEX_FIREFOX, bytesOf, dropPaths, goTo, htex, launch, openStudio, ready, saved, serve, shaping, thorough } from "./studio.mjs";
 
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -98,7 +98,7 @@ test("files that are chosen open as dropped ones do", async () => {
   await closed(page);
 });
 
-test("twenty files of other formats make one form, which imports them all", async () => {
+thorough("twenty files of other formats make one form, which imports them all", async () => {
   const page = await openStudio(browser, FILE);
   const names = await Promise.all(Array.from({ length: 20 }, async (_, i) => {
     const name = `taps ${String(i + 1).padStart(2, "0")}.ahap`;
@@ -194,7 +194,7 @@ async function makeLibrary() {
 
 const count = (page) => page.locator(".card").count();
 
-test("a library of 2,000 textures opens in 5 s, with progress, and the page stays free", async (t) => {
+thorough("a library of 2,000 textures opens in 5 s, with progress, and the page stays free", async (t) => {
   const library = await makeLibrary();
   const page = await openStudio(browser, server.address, { init: listen });
   await page.waitForTimeout(500);
@@ -430,7 +430,7 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
   });
 }
 
-test("long recordings are read beside the page: numbers that change do not stop it", async (t) => {
+thorough("long recordings are read beside the page: numbers that change do not stop it", async (t) => {
   const page = await openStudio(browser, FILE);
   htex("simulate", "--surface", "fine-fabric", "--seconds", "20", "-o", file("long 1.csv"));
   const names = [1, 2, 3, 4].map((i) => `long ${i}.csv`);

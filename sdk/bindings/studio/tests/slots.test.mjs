@@ -5,7 +5,7 @@ import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import test, { after, before } from "node:test";
 
-import { FILE, bytesOf, frames, goTo, launch, openStudio, ready, saved, serve, shaping, sounded } from "./studio.mjs";
+import { FILE, bytesOf, frames, goTo, isWhole, launch, openStudio, ready, saved, serve, shaping, sounded, thorough } from "./studio.mjs";
 
 const PHONE = { hasTouch: true, isMobile: true, reducedMotion: "reduce", userAgent: "Mozilla/5.0 (Linux; Android 16; Pixel 9) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/156.0.0.0 Mobile Safari/537.36" };
 const UPRIGHT = { viewport: { width: 390, height: 844 }, ...PHONE };
@@ -426,7 +426,7 @@ const counting = () => {
   };
 };
 
-test("the strip opens only the steps that it shows, in slices, and frees them", async () => {
+thorough("the strip opens only the steps that it shows, in slices, and frees them", async () => {
   const page = await openStudio(browser, server.address, { init: counting });
   await load(page, "Oak");
   await shaping(page);
@@ -487,7 +487,7 @@ test("the strip opens only the steps that it shows, in slices, and frees them", 
   await closed(page);
 });
 
-test("in small windows the strip is folded, and a button unfolds it", async () => {
+thorough("in small windows the strip is folded, and a button unfolds it", async () => {
   for (const options of [UPRIGHT, LYING, { viewport: { width: 720, height: 450 } }, { viewport: { width: 1024, height: 700 } }]) {
     const page = await openStudio(browser, FILE, options);
     const { width, height } = options.viewport;
@@ -514,7 +514,7 @@ test("in small windows the strip is folded, and a button unfolds it", async () =
   await closed(page);
 });
 
-for (const [name, options] of [["upright", UPRIGHT], ["lying", LYING]]) {
+for (const [name, options] of [["upright", UPRIGHT], ["lying", LYING]].slice(0, isWhole ? undefined : 1)) {
   test(`by touch, on a phone that is ${name}: versions and steps`, async () => {
     const page = await openStudio(browser, FILE, options);
     await load(page, "Oak");
@@ -575,7 +575,7 @@ async function showCode(page) {
   await page.getByRole("button", { name: "Show the code" }).click();
 }
 
-for (const colorScheme of ["light", "dark"]) {
+for (const colorScheme of isWhole ? ["light", "dark"] : ["dark"]) {
   test(`a QR code leads another browser to the same texture, byte for byte: ${colorScheme}`, async () => {
     const page = await openStudio(browser, remote, { colorScheme });
     await load(page, "Oak");
@@ -632,7 +632,7 @@ test("the code follows the texture", async () => {
   await closed(page);
 });
 
-test("a page that a phone cannot open asks for another address, which stays", async () => {
+thorough("a page that a phone cannot open asks for another address, which stays", async () => {
   for (const [address, why] of [[FILE, /file on this device/], [server.address, /at 127\.0\.0\.1:\d+, an address that exists only on this device/], [server.address.replace("127.0.0.1", "localhost"), /at localhost:\d+, an address/], [server.address.replace("127.0.0.1", "abc123.localhost"), /at abc123\.localhost:\d+, an address/]]) {
     const page = await openStudio(browser, address);
     await load(page, "Oak");

@@ -4,6 +4,7 @@ import { execFileSync } from "node:child_process";
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import path from "node:path";
+import test from "node:test";
 import { pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
 
@@ -99,6 +100,9 @@ export async function shaping(page) {
 
 /** Whether the tests take everything instead of a sample, as in `cargo xtask prove studio`. */
 export const isWhole = Boolean(process.env.HTEX_WHOLE);
+
+/** A test that takes long. Only the whole proof runs it. */
+export const thorough = (name, run) => test(name, { skip: !isWhole && "only `cargo xtask prove studio` runs it" }, run);
 
 /** The bytes of the present texture. */
 export async function bytesOf(page) {

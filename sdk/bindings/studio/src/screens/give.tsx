@@ -29,7 +29,6 @@ function LabelForm() {
   return (
     <div class="panel stack save-label">
       <TextField label="Name" isRequired value={name} {...field("name")} />
-      {isUnsaved.value && name === openedName.value && <p class="small soft">The texture that you opened has the same name. Another name tells them apart.</p>}
       <TextField label="Licence" list="licences" value={license} {...field("license")} />
       <datalist id="licences">
         {LICENCES.map((one) => (
@@ -69,7 +68,10 @@ function Actions() {
       <button class="button" onClick={after(keepOnShelf)}>
         Keep on the shelf
       </button>
-      <p class="small soft">Only this browser has the shelf. A file works in every program that plays htex.</p>
+      <p class="small soft">
+        Only this browser has the shelf. A file works in every program that plays htex.
+        {isUnsaved.value && present.value?.name === openedName.value && " The texture that you opened has the same name; another name tells them apart."}
+      </p>
     </div>
   );
 }

@@ -119,6 +119,7 @@ impl Manifest {
     }
 
     /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.
+    /// The function does not check the names: see [`is_extension_name`](crate::is_extension_name).
     pub fn set_extensions(&mut self, given: impl IntoIterator<Item = (String, Value)>) {
         for (name, value) in given {
             if value.is_null() {

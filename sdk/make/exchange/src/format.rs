@@ -120,9 +120,9 @@ const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profi
 
 /// The setting of [`PLAYED`] that names a stroke.
 const STROKE: &str = "stroke";
-/// Those of [`PLAYED`] that a stroke determines when a texture is exported along a stroke.
+/// Settings in [`PLAYED`] that a stroke determines when a texture is exported along it.
 const OF_STROKES: &[&str] = &["speed", "force", "seconds"];
-/// Those of [`PLAYED`] that a scene determines when a scene is exported.
+/// Settings in [`PLAYED`] that a scene determines when it is exported.
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {

@@ -9,7 +9,7 @@ export const EXTENSION = "org.htex.appearance/1";
 export const PATTERNS = ["grain", "ridges", "fibres", "weave", "bumps"] as const;
 export type Pattern = (typeof PATTERNS)[number];
 
-/** The keys are those of the file. */
+/** An appearance, with the same keys as in the file. */
 export interface Appearance {
   /** Hue, saturation and lightness of the colour, as in CSS's `hsl()`: degrees, and parts of 1. */
   readonly hue_deg: number;

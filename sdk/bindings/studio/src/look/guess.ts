@@ -82,7 +82,7 @@ const [CLAY, SLATE]: readonly [Rgb, Rgb] = [rgbOf({ hue_deg: 24, saturation: 0.3
 /** How far a line of a ridged spectrum reaches, in octaves or Hz, and how far it stands out, dB. */
 const [LINE_OCTAVES, LINE_HZ, LINE_DB] = [1 / 6, 11, 12];
 
-/** Whether the strongest part of a spectrum is a line, as that of parallel ridges is. */
+/** Whether the strongest part of a spectrum is a line. Parallel ridges have such a line. */
 function isRidged(magnitudes: Float64Array) {
   const at = magnitudes.indexOf(Math.max(...magnitudes));
   const hz = FINE_HZ[at] ?? 0;

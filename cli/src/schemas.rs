@@ -102,9 +102,7 @@ impl ExtensionSchema {
         }
         let form = || wrong("it looks like com.vendor.NAME/1=FILE".to_owned());
         let (name, file) = argument.split_once('=').ok_or_else(form)?;
-        if !htex_format::is_extension_name(name) {
-            return Err(form());
-        }
+        htex_format::check_extension_name(name).map_err(|error| wrong(error.to_string()))?;
         let file = PathBuf::from(file);
         let bytes = std::fs::read(&file).reading(&file)?;
         let schema = htex_format::parse_json(&bytes).map_err(|error| wrong(error.to_string()))?;

@@ -74,25 +74,24 @@ impl Edit {
         let extensions = extensions
             .into_iter()
             .map(|(name, file)| Ok((name, file.map_or(Ok(Value::Null), |file| json_of(&file))?)))
-            .collect::<Result<Vec<_>>>()?;
+            .collect::<Result<_>>()?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let failure = |error| match error {
             AuthorError::ReadAsset(error) => Failure::from(error),
             lost => Failure::other(lost),
         };
         let mut asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;
-        asset.manifest.set_extensions(extensions);
+        let is_set = asset.manifest.set_extensions(extensions);
+        is_set.map_err(|error| Failure::Usage(format!("--extension: {error}")))?;
         write_and_show(self.output.as_ref().unwrap_or(&self.asset), &asset, self.json)
     }
 }
 
 /// Reads `com.vendor.NAME/1=FILE`. Without the file, the extension is removed.
 fn named_file(argument: &str) -> Result<(String, Option<PathBuf>)> {
-    let named = argument.split_once('=');
-    let (name, file) =
-        named.filter(|(name, _)| htex_format::is_extension_name(name)).ok_or_else(|| {
-            Failure::Usage(format!("--extension {argument}: give com.vendor.NAME/1=FILE"))
-        })?;
+    let (name, file) = argument.split_once('=').ok_or_else(|| {
+        Failure::Usage(format!("--extension {argument}: give com.vendor.NAME/1=FILE"))
+    })?;
     Ok((name.to_owned(), Some(PathBuf::from(file)).filter(|_| !file.is_empty())))
 }
 

@@ -139,7 +139,7 @@ fn an_extension_is_set_kept_and_removed() {
     let removed = place.json(&["edit", "oak.htex", "--extension", &none, "--json"]);
     assert!(removed["manifest"]["extensions"].is_null());
     for (argument, said) in [
-        ("LOOK=look.json", "com.vendor.NAME/1=FILE"),
+        ("LOOK=look.json", "com.vendor.NAME/REVISION"),
         ("com.example.LOOK/1", "com.vendor.NAME/1=FILE"),
         ("com.example.LOOK/1=oak.htex", "oak.htex"),
         ("com.example.LOOK/1=absent.json", "absent.json"),

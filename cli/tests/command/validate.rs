@@ -48,7 +48,7 @@ fn an_extension_is_held_to_its_authors_schema() {
     for (argument, words) in [
         ("com.example.LOOK/1=remote.json", "nothing is fetched"),
         ("com.example.LOOK/1=absent.json", "absent.json"),
-        ("LOOK=right.json", "com.vendor.NAME/1=FILE"),
+        ("LOOK=right.json", "com.vendor.NAME/REVISION"),
     ] {
         let run = place.run(&["validate", &file, "--extension-schema", argument]);
         assert_ne!(run.code(), 0, "{argument}");

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::check_plugins::check_plugins;
 use crate::check_representation::{check_representations, is_size};
 use crate::doi::check_doi;
+use crate::error::MetadataError;
 use crate::license::check_license;
 use htex_model::Band;
 
@@ -155,10 +156,9 @@ fn check_law(manifest: &Manifest, findings: &mut Findings) {
 
 fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     for name in manifest.extensions.keys() {
-        let pointer = format_args!("/extensions/{}", escape(name));
-        findings.require(is_extension_name(name), rule::EXTENSION_NAME_INVALID, pointer, || {
-            format!("{name:?} is not of the form com.vendor.NAME/REVISION")
-        });
+        if let Err(error) = check_extension_name(name) {
+            findings.add(error.rule(), format!("/extensions/{}", escape(name)), error.to_string());
+        }
     }
     for (i, name) in manifest.extensions_required.iter().enumerate() {
         let pointer = format!("/extensions_required/{i}");
@@ -167,22 +167,27 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
-/// Returns whether a name has the form `com.vendor.NAME/REVISION`.
+/// Checks that a name has the form `com.vendor.NAME/REVISION`.
+///
+/// # Errors
+///
+/// Returns [`MetadataError::ExtensionName`] for a name of another form.
 ///
 /// ```
-/// assert!(htex_format::is_extension_name("com.example.LOOK/1"));
-/// assert!(!htex_format::is_extension_name("LOOK"));
+/// assert!(htex_format::check_extension_name("com.example.LOOK/1").is_ok());
+/// assert!(htex_format::check_extension_name("LOOK").is_err());
 /// ```
-pub fn is_extension_name(name: &str) -> bool {
-    let Some((id, revision)) = name.split_once('/') else {
-        return false;
-    };
-    let parts = || id.split('.');
-    let word = |part: &str| {
+pub fn check_extension_name(name: &str) -> Result<(), MetadataError> {
+    let is_word = |part: &str| {
         let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'-' || b == b'_';
         !part.is_empty() && part.bytes().all(allowed)
     };
-    // An empty revision passes this test, and is refused below.
-    let number = revision.bytes().all(|b| b.is_ascii_digit()) && !revision.starts_with('0');
-    parts().count() >= 3 && parts().all(word) && number && !revision.is_empty()
+    let is_number = |text: &str| {
+        text.starts_with(|c| matches!(c, '1'..='9')) && text.bytes().all(|b| b.is_ascii_digit())
+    };
+    let parts = |id: &str| id.split('.').try_fold(0, |n, part| is_word(part).then_some(n + 1));
+    match name.split_once('/') {
+        Some((id, revision)) if is_number(revision) && parts(id) >= Some(3) => Ok(()),
+        _ => Err(MetadataError::ExtensionName { name: name.to_owned() }),
+    }
 }

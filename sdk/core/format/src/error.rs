@@ -91,7 +91,7 @@ pub enum WriteError {
     },
 }
 
-/// Error for a text of the metadata, such as a licence, whose form is invalid.
+/// Error for a text of the manifest, such as a licence, whose form is invalid.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -110,17 +110,21 @@ pub enum MetadataError {
         "{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/"
     )]
     Doi { doi: String },
+    /// The name of an extension has another form than `com.vendor.NAME/REVISION`.
+    #[error("{name:?} is not of the form com.vendor.NAME/REVISION")]
+    ExtensionName { name: String },
 }
 
 impl MetadataError {
-    /// Returns the broken rule. The rule for an unlisted licence has the severity warning; all
-    /// other rules are errors.
+    /// Returns the broken rule. The rules for an unlisted licence and for the name of an extension
+    /// have the severity warning. The other rules are errors.
     #[must_use]
     pub fn rule(&self) -> &'static Rule {
         match self {
             Self::UnlistedLicense { .. } => rule::LICENSE_UNKNOWN,
             Self::License { .. } => rule::LICENSE_INVALID,
             Self::Doi { .. } => rule::DOI_INVALID,
+            Self::ExtensionName { .. } => rule::EXTENSION_NAME_INVALID,
         }
     }
 }

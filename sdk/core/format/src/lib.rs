@@ -63,7 +63,7 @@ mod zip_writer;
 pub use appearance::{APPEARANCE, Appearance, Pattern};
 pub use asset::Asset;
 pub use block::{round_parameters, round_within, stored_bytes};
-pub use check_manifest::is_extension_name;
+pub use check_manifest::check_extension_name;
 pub use document::{Document, DocumentRules, VersionedJson};
 pub use doi::check_doi;
 pub use entry_ranges::{EntryRange, entry_ranges};

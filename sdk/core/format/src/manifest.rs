@@ -8,9 +8,11 @@ use std::collections::BTreeMap;
 use htex_model::Band;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::Quantity;
+use crate::check_manifest::check_extension_name;
+use crate::error::MetadataError;
 use crate::law::{Contact, Law};
 use crate::measure::ErrorMeasure;
 use crate::quality::{LeftOut, Quality};
@@ -119,8 +121,17 @@ impl Manifest {
     }
 
     /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.
-    /// The function does not check the names: see [`is_extension_name`](crate::is_extension_name).
-    pub fn set_extensions(&mut self, given: impl IntoIterator<Item = (String, Value)>) {
+    ///
+    /// # Errors
+    ///
+    /// Returns [`MetadataError::ExtensionName`] for a name that is not of the form
+    /// `com.vendor.NAME/REVISION`. The manifest is then unchanged. Any name can be removed.
+    pub fn set_extensions(&mut self, given: Map<String, Value>) -> Result<(), MetadataError> {
+        for (name, value) in &given {
+            if !value.is_null() {
+                check_extension_name(name)?;
+            }
+        }
         for (name, value) in given {
             if value.is_null() {
                 self.extensions.remove(&name);
@@ -128,6 +139,7 @@ impl Manifest {
                 self.extensions.insert(name, value);
             }
         }
+        Ok(())
     }
 }
 

@@ -8,7 +8,7 @@ use htex::model::Band;
 use htex::model::Registry;
 use htex_author::by_hand::{self, ByHandAt, ByHandModel, ByHandModels, MixedAsset};
 use htex_author::settings::Metadata;
-use htex_format::{Asset, Condition, is_extension_name};
+use htex_format::{Asset, Condition};
 use serde_json::{Map, Value};
 
 use super::TOOL;
@@ -16,26 +16,30 @@ use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 
-fn metadata(mut given: Document) -> Result<Metadata, Refusal> {
-    let metadata: Metadata = given.table(Metadata::NAMES)?;
-    given.finish()?;
-    metadata.check()?;
-    Ok(metadata)
+/// What a call says about a texture, besides how it is made.
+struct Said {
+    metadata: Metadata,
+    /// An extension that is `null` is removed.
+    extensions: Map<String, Value>,
 }
 
-/// Takes the extensions that are set, and those that are removed by `null`.
-fn extensions(call: &mut Document) -> Result<Map<String, Value>, Refusal> {
-    let given = call.map("extensions")?;
-    match given.keys().find(|name| !is_extension_name(name)) {
-        None => Ok(given),
-        Some(name) => Err(Refusal::argument(format!(
-            "the extension {name}: give a name such as com.vendor.NAME/1"
-        ))),
+impl Said {
+    /// Takes the last entries of a call.
+    fn new(mut call: Document) -> Result<Self, Refusal> {
+        let mut given = call.object("metadata")?;
+        let metadata: Metadata = given.table(Metadata::NAMES)?;
+        given.finish()?;
+        metadata.check()?;
+        let extensions = call.map("extensions")?;
+        call.finish()?;
+        Ok(Self { metadata, extensions })
     }
-}
 
-fn answer(asset: &Asset) -> Result<Answer, Refusal> {
-    Answer::new(&(), asset.to_bytes()?)
+    /// Answers with the bytes of the asset, with the extensions.
+    fn answer(self, mut asset: Asset) -> Result<Answer, Refusal> {
+        asset.manifest.set_extensions(self.extensions)?;
+        Answer::new(&(), asset.to_bytes()?)
+    }
 }
 
 /// Makes a texture from parameters. The bytes of the answer are the asset.
@@ -48,10 +52,8 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
         .collect::<Result<_, _>>()?;
     let quantity = quantity(call.text("quantity")?)?;
     let band = band(&call.list("band")?)?;
-    let metadata = metadata(call.object("metadata")?)?;
-    let extensions = extensions(&mut call)?;
-    call.finish()?;
-    let name = metadata.name.clone();
+    let said = Said::new(call)?;
+    let name = said.metadata.name.clone();
     let mut asset = by_hand::make_all(&ByHandModels {
         name: name.unwrap_or_else(|| "texture".to_owned()),
         models,
@@ -59,9 +61,8 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
         band,
         tool: TOOL.to_owned(),
     })?;
-    metadata.apply(&mut asset.manifest);
-    asset.manifest.set_extensions(extensions);
-    answer(&asset)
+    said.metadata.apply(&mut asset.manifest);
+    said.answer(asset)
 }
 
 pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
@@ -125,9 +126,7 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
 pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let weight = call.number("weight")?;
     let weight = weight.ok_or_else(|| Refusal::argument("give a weight from 0 to 1"))?;
-    let metadata = metadata(call.object("metadata")?)?;
-    let extensions = extensions(&mut call)?;
-    call.finish()?;
+    let said = Said::new(call)?;
     let [a, b] = files else {
         return Err(Refusal::argument("give two textures"));
     };
@@ -137,13 +136,12 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
         MixedAsset { asset: &first, blake3: &first_hash },
         MixedAsset { asset: &second, blake3: &second_hash },
         weight,
-        metadata.name.as_deref().unwrap_or("mix"),
+        said.metadata.name.as_deref().unwrap_or("mix"),
         TOOL,
     );
     let mut asset = mixed?;
-    metadata.apply(&mut asset.manifest);
-    asset.manifest.set_extensions(extensions);
-    answer(&asset)
+    said.metadata.apply(&mut asset.manifest);
+    said.answer(asset)
 }
 
 /// Opens a texture and computes its hash.
@@ -154,18 +152,15 @@ fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
 
 /// Changes the metadata and extensions of a texture, which is the only file. The bytes of the answer
 /// are the asset.
-pub(crate) fn edit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
-    let metadata = metadata(call.object("metadata")?)?;
-    let extensions = extensions(&mut call)?;
-    call.finish()?;
-    if metadata.is_empty() && extensions.is_empty() {
+pub(crate) fn edit(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let said = Said::new(call)?;
+    if said.metadata.is_empty() && said.extensions.is_empty() {
         let sentence = "nothing to change: give at least one of the metadata, such as author";
         return Err(Refusal::argument(sentence));
     }
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    let mut asset = htex_author::edit(bytes, &metadata)?;
-    asset.manifest.set_extensions(extensions);
-    answer(&asset)
+    let asset = htex_author::edit(bytes, &said.metadata)?;
+    said.answer(asset)
 }

@@ -4,7 +4,7 @@ use htex_author::recording::{ReadError, ReadProblem};
 use htex_author::{AuthorError, AuthorErrorKind};
 use htex_c::htex_status::*;
 use htex_format::library::LibraryError;
-use htex_format::{ReadError as AssetError, WriteError};
+use htex_format::{MetadataError, ReadError as AssetError, WriteError};
 
 use crate::refusal::Refusal;
 
@@ -46,6 +46,12 @@ impl From<AuthorError> for Refusal {
 impl From<AssetError> for Refusal {
     fn from(error: AssetError) -> Self {
         Self::asset(error)
+    }
+}
+
+impl From<MetadataError> for Refusal {
+    fn from(error: MetadataError) -> Self {
+        Self::argument(error)
     }
 }
 

@@ -14,6 +14,7 @@ import { handles, moveHandle, setMacro } from "./shaping/session.ts";
 import { setPlayer } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
 import { begin, depth, fail, notice, present, redo, say, screen, texture, undo, type Notice } from "./state.ts";
+import { reference } from "./reference.ts";
 import { inTime, refusal } from "./store.ts";
 import { keep, keepWork, suggest } from "./work.ts";
 
@@ -133,5 +134,5 @@ export function start() {
 }
 
 /** What scripts, such as the tests', may look at and call in the console: `htexStudio`. */
-export const scripted = { audioContext, playingNode, heard, finger, present, texture, author, begin, undo, redo, depth, moveHandle, setMacro, handles };
+export const scripted = { audioContext, playingNode, heard, finger, present, texture, author, begin, undo, redo, depth, moveHandle, setMacro, handles, reference };
 Object.assign(globalThis, { htexStudio: scripted });

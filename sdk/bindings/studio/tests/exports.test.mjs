@@ -1,15 +1,11 @@
 // Exports to other haptic formats in the studio, in Chromium: the files are those of the command.
 
 import assert from "node:assert/strict";
-import { mkdtemp, readFile, writeFile } from "node:fs/promises";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
-import path from "node:path";
-import test, { after, before } from "node:test";
+import { readFile, writeFile } from "node:fs/promises";
+import test from "node:test";
 
-import { FILE, bytesOf, goTo, htex, launch, openStudio, saved, serve } from "./studio.mjs";
+import { FILE, assertAccessible, browser, bytesOf, closed, file, goTo, htex, openStudio, prepare, saved, server } from "./studio.mjs";
 
-const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const MODULE = /htex-import[^/]*\.wasm/;
 const { formats: FORMATS } = JSON.parse(htex("formats", "--json"));
 
@@ -24,26 +20,12 @@ const CHOICES = {
   gltf: { flags: [], extension: "glb" },
 };
 
-let browser, server, folder;
-
-before(async () => {
-  [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-exports-"))]);
+prepare(async () => {
   htex("make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02", "--at", "speed=80,force=0.5", "--license", "CC-BY-4.0", "-o", file("hum.htex"));
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.close();
-});
-
-const file = (name) => path.join(folder, name);
 const form = (page) => page.getByRole("form", { name: "Export" });
 const save = (page) => form(page).getByRole("button", { name: /^Save \./ });
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
 
 /** Opens the page with the texture of the tests on the pad, and the section of exports. */
 async function openExports(address, options) {
@@ -136,10 +118,7 @@ for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 
     await save(page).focus();
     assert.equal((await saved(page, () => page.keyboard.press("Enter"))).name, "hum.ahap");
     await form(page).locator(".exported").waitFor();
-    await page.evaluate(AXE);
-    await page.waitForTimeout(400);
-    const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-    assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`), []);
+    await assertAccessible(page);
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= viewport.width);
     const heights = await form(page).locator(":is(input, select, button)").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().height));
     assert.ok(viewport.width > 500 || heights.every((height) => height >= 43.5), String(heights));

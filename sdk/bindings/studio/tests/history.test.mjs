@@ -1,31 +1,16 @@
 // What the user made stays: the history, the label, the shelf, over reloads and in several tabs, and when the browser stores nothing.
 
 import assert from "node:assert/strict";
-import { mkdir, mkdtemp, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
+import { mkdir, writeFile } from "node:fs/promises";
 import path from "node:path";
-import test, { after, before } from "node:test";
+import test from "node:test";
 import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-import { FILE, HTEX_CHROMIUM, SCREENS, bytesOf, goTo, htex, launch, openStudio, ready, saved, serve, shaping, thorough } from "./studio.mjs";
+import { FILE, HTEX_CHROMIUM, SCREENS, browser, bytesOf, closed, folder, goTo, htex, openStudio, prepare, ready, saved, server, shaping, thorough } from "./studio.mjs";
 
-let browser, server, folder;
-
-before(async () => {
-  [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-history-"))]);
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.close();
-});
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
+prepare();
 
 /** Another tab of the same browser. */
 async function openTab(page, address) {

@@ -2,16 +2,12 @@
 // keys alone and by touch.
 
 import assert from "node:assert/strict";
-import { mkdtemp, readFile, writeFile } from "node:fs/promises";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
+import { writeFile } from "node:fs/promises";
 import path from "node:path";
-import test, { after, before } from "node:test";
+import test from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, SCREENS, bytesOf, frames, goTo, htex, isWhole, launch, openStudio, ready, saved, serve, shaping, swipe, thorough } from "./studio.mjs";
-
-const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+import { FILE, SCREENS, assertAccessible, browser, bytesOf, closed, folder, frames, goTo, htex, isWhole, openStudio, prepare, ready, saved, server, shaping, swipe, thorough } from "./studio.mjs";
 
 const PHONE = { hasTouch: true, isMobile: true, userAgent: "Mozilla/5.0 (Linux; Android 16; Pixel 9) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/156.0.0.0 Mobile Safari/537.36" };
 const UPRIGHT = { viewport: { width: 390, height: 844 }, ...PHONE };
@@ -20,21 +16,7 @@ const ALL_WINDOWS = [{ viewport: { width: 640, height: 400 } }, UPRIGHT, LYING, 
 const WINDOWS = ALL_WINDOWS.slice(0, isWhole ? undefined : 2);
 const NAMES = ["Rougher", "Brighter", "Peak", "Level"];
 
-let browser, server, folder;
-
-before(async () => {
-  [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-knobs-"))]);
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.close();
-});
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
+prepare();
 
 const knob = (page, name) => page.getByRole("slider", { name, exact: true });
 
@@ -876,9 +858,7 @@ for (const [name, options] of [["upright, dark", { ...UPRIGHT, colorScheme: "dar
       const ground = await player.evaluate(() => getComputedStyle(document.body).backgroundColor);
       assert.ok(ground.match(/\d+/g).every((part) => Number(part) < 60), ground);
     }
-    await player.evaluate(AXE);
-    const { violations } = await player.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-    assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 120)}`), []);
+    await assertAccessible(player);
     await closed(player);
     await closed(page);
   });

@@ -3,34 +3,17 @@
 
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { mkdtemp, readFile, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
-import path from "node:path";
-import test, { after, before } from "node:test";
+import { writeFile } from "node:fs/promises";
+import test from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, bytesOf, dropPaths, frames, goTo, htex, launch, openStudio, ready, saved, serve, shaping, thorough } from "./studio.mjs";
+import { FILE, browser, bytesOf, closed, dropPaths, file, frames, goTo, htex, openStudio, prepare, ready, saved, server, shaping, thorough } from "./studio.mjs";
 
 const APPEARANCE = "org.htex.appearance/1";
 const WOOD = { hue_deg: 28, saturation: 0.5, lightness: 0.4, gloss: 0.2, relief: 0.5, pattern: "fibres" };
 
-let browser, server, folder;
+prepare();
 
-before(async () => {
-  [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-look-"))]);
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.close();
-});
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
-
-const file = (name) => path.join(folder, name);
 const card = (page, name) => page.locator(".card", { hasText: new RegExp(`^${name}`) });
 const digest = (data) => createHash("sha256").update(data).digest("hex");
 

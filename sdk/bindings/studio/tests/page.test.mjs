@@ -1,32 +1,14 @@
 // The studio in Chromium.
 
 import assert from "node:assert/strict";
-import { mkdtemp, readFile, writeFile } from "node:fs/promises";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
+import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
-import test, { after, before } from "node:test";
+import test from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, SCREENS, bytesOf, goTo, htex, isWhole, launch, openStudio, ready, samplesOf, saved, serve, shaping, until } from "./studio.mjs";
+import { FILE, SCREENS, assertAccessible, browser, bytesOf, closed, folder, goTo, htex, isWhole, openStudio, prepare, ready, samplesOf, saved, serve, server, shaping, until } from "./studio.mjs";
 
-const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-
-let browser, server, folder;
-
-before(async () => {
-  [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-studio-"))]);
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.close();
-});
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
+prepare();
 
 /** Samples of the present texture in the page. */
 function rendered(page, frames, options) {
@@ -338,9 +320,7 @@ test("a recording is compared by ear with its models, with matched levels, blind
   await page.getByRole("button", { name: /^B .*, plays$/ }).waitFor();
   await page.keyboard.press("c");
   await page.getByRole("button", { name: /^A .*, plays$/ }).waitFor();
-  await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-  assert.deepEqual(violations.map(({ id }) => id), []);
+  await assertAccessible(page);
   await page.keyboard.press("Escape");
   await closed(page);
 });
@@ -456,13 +436,9 @@ for (const colorScheme of ["light", "dark"]) {
     if (!isWhole && (colorScheme === "dark") !== viewport.width < 500) continue;
     test(`no screen has a finding of axe: ${colorScheme}, ${viewport.width} px`, async () => {
       const page = await openStudio(browser, FILE, { colorScheme, viewport, reducedMotion: "reduce" });
-      await page.evaluate(AXE);
       for (const name of SCREENS) {
         await goTo(page, name);
-        await page.waitForTimeout(400);
-        const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-        const told = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`);
-        assert.deepEqual(told, [], name);
+        await assertAccessible(page, name);
       }
       await closed(page);
     });

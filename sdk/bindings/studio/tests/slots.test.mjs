@@ -5,7 +5,7 @@ import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import test, { after, before } from "node:test";
 
-import { FILE, bytesOf, frames, goTo, isWhole, launch, openStudio, ready, saved, serve, shaping, sounded, thorough } from "./studio.mjs";
+import { FILE, bytesOf, closed, frames, goTo, isWhole, launch, openStudio, ready, saved, serve, shaping, sounded, thorough } from "./studio.mjs";
 
 const PHONE = { hasTouch: true, isMobile: true, reducedMotion: "reduce", userAgent: "Mozilla/5.0 (Linux; Android 16; Pixel 9) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/156.0.0.0 Mobile Safari/537.36" };
 const UPRIGHT = { viewport: { width: 390, height: 844 }, ...PHONE };
@@ -26,11 +26,6 @@ after(async () => {
   await browser?.close();
   await server?.close();
 });
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
 
 /** Another tab of the same browser. */
 async function openTab(page, address) {

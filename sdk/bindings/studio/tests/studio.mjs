@@ -1,10 +1,13 @@
 // What the tests share: the page as a file and from a server, a browser, and the command.
 
+import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { mkdtemp, readFile, rm } from "node:fs/promises";
 import { createServer } from "node:http";
-import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
 import path from "node:path";
-import test from "node:test";
+import test, { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
 
@@ -47,6 +50,39 @@ export async function serve({ isCompressed = false } = {}) {
 /** Chromium under its default policy: sound needs a press. */
 export function launch(options = {}) {
   return chromium.launch({ executablePath: HTEX_CHROMIUM, args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking"], ...options });
+}
+
+/** What `prepare` brings: Chromium, the page on a server, and a folder for files. */
+export let browser, server, folder;
+
+/** A file of the folder. */
+export const file = (name) => path.join(folder, name);
+
+/** Brings what the tests of a file need, and takes it away after them. `more` runs before the first test. */
+export function prepare(more) {
+  before(async () => {
+    [browser, server, folder] = await Promise.all([launch(), serve(), mkdtemp(path.join(tmpdir(), "htex-studio-"))]);
+    await more?.();
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.close();
+    if (folder) await rm(folder, { recursive: true });
+  });
+}
+
+/** Closes a page that must not have complained of anything. */
+export async function closed(page) {
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+}
+
+/** That axe finds nothing on the page, once it has changed its colours. */
+export async function assertAccessible(page, what) {
+  await page.evaluate(await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8"));
+  await page.waitForTimeout(400);
+  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+  assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`), [], what);
 }
 
 /** Opens the page, in which `init` runs first, and waits until it is ready; `page.errors` has what it complained of, `page.requests` what it asked for. */

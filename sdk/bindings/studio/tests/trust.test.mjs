@@ -3,27 +3,15 @@
 // raises no alarm, and a change of pitch leaves no gap.
 
 import assert from "node:assert/strict";
-import { copyFile, mkdtemp, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
+import { copyFile, writeFile } from "node:fs/promises";
 import path from "node:path";
-import test, { after, before } from "node:test";
+import test from "node:test";
 
-import { FILE, bytesOf, frames, goTo, htex, isWhole, launch, openStudio, saved, shaping, sounded } from "./studio.mjs";
+import { FILE, browser, bytesOf, closed, dropPaths, folder, frames, goTo, htex, isWhole, openStudio, prepare, saved, shaping, sounded, swipe } from "./studio.mjs";
 
-let browser, folder;
-
-before(async () => {
-  [browser, folder] = await Promise.all([launch(), mkdtemp(path.join(tmpdir(), "htex-trust-"))]);
+prepare(async () => {
   await copyFile(new URL("./felt.xml", import.meta.url), path.join(folder, "felt.xml"));
 });
-
-after(() => browser?.close());
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
-}
-
 
 /** A model file of the Haptic Texture Toolkit: at each speed and force a resonance. */
 async function modelFile(name, nodes) {
@@ -127,6 +115,40 @@ test("loudness, grain and card are of the condition nearest to the sliders, also
   await slide(page, "Speed", 20, SPEEDS);
   await grainAfter(page, alone);
   assert.notEqual(await outline(/^Several/), drawn);
+  await closed(page);
+});
+
+test("on Compare, a side whose condition at the sliders is silent is as loud as at its strongest condition", async () => {
+  const page = await openStudio(browser, FILE);
+  const [slow, fast] = [{ speed: 20, force: 0.4, power: 0, hz: 50 }, { speed: 240, force: 3, power: 0.02, hz: 120 }];
+  await open(page, await modelFile("Quiet", [slow, fast]), "Quiet");
+  await slide(page, "Speed", slow.speed, SPEEDS);
+  await goTo(page, "Compare");
+  await page.locator(".side", { hasText: /^A/ }).click();
+  await sounded(page, 0.3);
+  const [gain, strongest] = await page.evaluate((at) => [htexStudio.playingNode().gain.value, htexStudio.texture.value.level({ at })], { speed: fast.speed, force: fast.force });
+  assert.ok(Math.abs(20 * Math.log10((gain * strongest) / 0.1)) < 0.1, `gain ${gain}, level ${strongest}`);
+  await closed(page);
+});
+
+test("on Shape, the recorded curve is of the recording nearest to the sliders", async () => {
+  const page = await openStudio(browser, FILE);
+  const speeds = [30, 200];
+  for (const speed of speeds) htex("simulate", "--surface", "fine-fabric", "--seconds", "3", "--speed", String(speed), "--force", "0.4", "-o", path.join(folder, `at-${speed}.csv`));
+  await goTo(page, "Record");
+  await page.locator("input[type=file]").setInputFiles(speeds.map((speed) => path.join(folder, `at-${speed}.csv`)));
+  await page.getByRole("button", { name: "Fit all models" }).click();
+  await page.getByRole("button", { name: "To the pad" }).first().click();
+  await page.getByText("recording", { exact: true }).waitFor();
+  const curves = [];
+  for (const speed of speeds) {
+    await slide(page, "Speed", speed, SPEEDS);
+    const { hz, db } = await page.evaluate(() => htexStudio.reference.value.recorded);
+    curves.push(Object.values(hz).map((x, i) => [x, db[i]]));
+  }
+  // Faster motion is stronger, and its ridges are at higher frequencies.
+  const mean = (curve, from, to) => curve.filter(([x]) => x >= from && x < to).reduce((sum, [, db], _, all) => sum + db / all.length, 0);
+  assert.ok(mean(curves[1], 300, 1000) > mean(curves[0], 300, 1000) + 3, `${mean(curves[0], 300, 1000)} and ${mean(curves[1], 300, 1000)} dB`);
   await closed(page);
 });
 
@@ -271,6 +293,56 @@ test("pair and settings of a blind test stay, and its table names them", async (
   const csv = await csvOf(page);
   assert.match(csv.bytes.toString(), /^trial,x,answer,correct,seconds,pitch,a,b,levels_matched\n/);
   for (const row of rowsOf(csv)) assert.deepEqual(row.slice(5), ["1", '"Oak"', '"Oak', ' as it was opened"', "1"]);
+  await closed(page);
+});
+
+test("a file that is dropped during a blind test does not change the pair", async () => {
+  const page = await openStudio(browser, FILE, { init: alternating });
+  htex("make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.2", "--at", "speed=80,force=0.5", "--name", "Hum", "-o", path.join(folder, "hum.htex"));
+  await begin(page, "Shelf: Zip");
+  await page.getByRole("button", { name: "X is A" }).click();
+  await dropPaths(page, [path.join(folder, "hum.htex")]);
+  await page.locator(".notice", { hasText: "Hum is on the shelf" }).waitFor();
+  assert.equal(await painted(page), 0);
+  for (let i = 1; i < 10; i++) await page.getByRole("button", { name: "X is A" }).click();
+  const names = rowsOf(await csvOf(page)).map((row) => row.slice(-3, -1).join());
+  assert.deepEqual(names, Array(10).fill('"Coarse fabric","Zip"'));
+  await closed(page);
+});
+
+test("a blind test is taken by keys alone", async () => {
+  const page = await openStudio(browser, FILE, { init: alternating });
+  await goTo(page, "Compare");
+  await page.getByRole("main").getByRole("combobox").nth(1).focus();
+  await page.keyboard.type("Shelf: Zip");
+  const press = async (name) => {
+    for (let i = 0; i < 60 && (await page.evaluate(() => document.activeElement.textContent)) !== name; i++) await page.keyboard.press("Tab");
+    await page.keyboard.press("Enter");
+  };
+  await press("Begin ten trials");
+  for (let i = 1; i <= 10; i++) {
+    await press("X is A");
+    await page.getByRole("main").getByText(i < 10 ? `${i} of 10 answered.` : "5 of 10 right").waitFor();
+  }
+  const [csv] = await Promise.all([page.waitForEvent("download"), press("Save as CSV")]);
+  assert.equal(csv.suggestedFilename(), "abx.csv");
+  await closed(page);
+});
+
+test("a blind test is taken by touch", async () => {
+  const page = await openStudio(browser, FILE, { init: alternating, hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+  await page.getByRole("navigation").getByRole("button", { name: "Compare" }).tap();
+  await page.getByRole("main").getByRole("combobox").nth(1).selectOption({ label: "Shelf: Zip" });
+  const tap = (name) => page.getByRole("button", { name }).tap();
+  await tap("Begin ten trials");
+  for (let i = 0; i < 10; i++) {
+    await tap(/^X the unknown one/);
+    const pad = await page.locator(".pad canvas").boundingBox();
+    await swipe(page, [pad.x + 20, pad.y + 40], [pad.x + pad.width - 20, pad.y + 40], 6);
+    assert.equal(await painted(page), 0);
+    await tap("X is A");
+  }
+  await page.getByRole("main").getByText("5 of 10 right").waitFor();
   await closed(page);
 });
 

@@ -2,12 +2,10 @@
 // touch.
 
 import assert from "node:assert/strict";
-import { mkdtemp, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
-import path from "node:path";
-import test, { after, before } from "node:test";
+import { writeFile } from "node:fs/promises";
+import test from "node:test";
 
-import { FILE, SCREENS, bytesOf, frames, goTo, htex, isWhole, launch, openStudio, shaping, sounded, swipe } from "./studio.mjs";
+import { FILE, SCREENS, browser, bytesOf, closed, file, frames, goTo, htex, isWhole, openStudio, prepare, shaping, sounded, swipe } from "./studio.mjs";
 
 const PHONE = { hasTouch: true, isMobile: true, userAgent: "Mozilla/5.0 (Linux; Android 16; Pixel 9) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/156.0.0.0 Mobile Safari/537.36" };
 
@@ -25,28 +23,14 @@ const WINDOWS = isWhole ? ALL_WINDOWS : [ALL_WINDOWS[1], UPRIGHT];
 const PHONES = WINDOWS.filter(({ hasTouch }) => hasTouch);
 const SCHEMES = isWhole ? ["light", "dark"] : ["dark"];
 
-let browser, folder;
-
-before(async () => {
-  [browser, folder] = await Promise.all([launch(), mkdtemp(path.join(tmpdir(), "htex-windows-"))]);
+prepare(async () => {
   await writeFile(file("torn.htex"), "this is no texture");
   htex("make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02", "--at", "speed=80,force=0.5", "-o", file("hum.htex"));
   htex("export", file("hum.htex"), "--to", "ahap", "-o", file("buzz.ahap"));
 });
 
-after(async () => {
-  await browser?.close();
-});
-
-const file = (name) => path.join(folder, name);
-
 function enter({ name: _, ...options }, more = {}) {
   return openStudio(browser, FILE, { reducedMotion: "reduce", ...options, ...more });
-}
-
-async function closed(page) {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
 }
 
 /** What comes last on a screen, because it needs the module that makes textures. */
@@ -91,6 +75,13 @@ for (const window of WINDOWS) {
     for (const name of SCREENS) {
       await show(page, name);
       small.push([name, await shown()]);
+      // Fields and buttons stand inside their panels.
+      const outside = await page.locator("main .panel :is(input, select, textarea, button):not([type=file])").evaluateAll((all) => {
+        const ends = (one) => [one.getBoundingClientRect().left, one.getBoundingClientRect().right];
+        const isOutside = ([left, right], [from, to]) => left < from - 0.5 || right > to + 0.5;
+        return all.filter((one) => one.checkVisibility() && isOutside(ends(one), ends(one.closest(".panel")))).map((one) => one.outerHTML.slice(0, 120));
+      });
+      assert.deepEqual({ name, outside }, { name, outside: [] });
       // As a wheel, a finger or the key End would.
       await page.mouse.move(8, height - 8);
       await page.mouse.wheel(0, 4000);

@@ -2,7 +2,7 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { render } from "preact";
-import { useEffect, useMemo, useRef } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import { open, setLibrary, type Texture } from "htex";
 
 import "../styles/base.css";
@@ -16,13 +16,11 @@ import { near, recordedRange } from "../conditions.ts";
 import { coverageText } from "../coverage-text.ts";
 import { slideGhost } from "../ghost.ts";
 import { toLink } from "../link.ts";
-import { byKey, finger, isPiloted, pilot, pilotForce, pilotSpeed, releaseKeys, rest, setPilot, sliders } from "../motion.ts";
+import { finger, isPiloted, pilot, pilotForce, pilotSpeed, rest, setPilot, sliders } from "../motion.ts";
 import { LampHandle } from "../parts/lamp.tsx";
 import { Name } from "../parts/name.tsx";
-import { followHand, followKey } from "../parts/pad-hand.ts";
-import { PadPainter } from "../parts/pad-painter.ts";
+import { PadSurface } from "../parts/pad-surface.tsx";
 import { Slider } from "../parts/slider.tsx";
-import { isTouch } from "../theme.ts";
 import type { PlayerOptions } from "./options.ts";
 import { failure, isAwake, startSound, volume } from "./sound.ts";
 
@@ -54,40 +52,16 @@ effect(() => {
 });
 
 function Pad({ texture, model }: { texture: Texture; model: string }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const voice = useMemo(() => texture.voice({ model }), [texture, model]);
-  useEffect(() => {
-    const element = canvas.current;
-    if (!element) return;
-    const painter = new PadPainter(element, { sounding: signal({ texture, model }), pictured: computed(() => near(texture, model, sliders.value).place) });
-    const end = followHand(element, wake);
-    return () => {
-      end();
-      painter.end();
-    };
-  }, []);
+  const shown = useMemo(() => ({ sounding: signal({ texture, model }), pictured: computed(() => near(texture, model, sliders.value).place) }), [texture, model]);
   const told = voice.coverage(judged.value);
   const isOutside = told.kind === "outside";
   return (
     <>
-      <div class={isOutside ? "pad outside" : "pad"}>
-        <canvas
-          ref={canvas}
-          id="pad"
-          tabIndex={0}
-          role="application"
-          aria-label={`Pad of ${texture.name}. ${isTouch.value ? "Press and slide." : "Arrow keys slide, Shift slides faster, 1 to 5 press harder, Space slides back and forth."}`}
-          onKeyDown={(event) => followKey(event, wake)}
-          onKeyUp={(event) => byKey(event.key, false, event.shiftKey)}
-          onBlur={releaseKeys}
-          onContextMenu={(event) => event.preventDefault()}
-        />
-        <p class="pad-hint keys" aria-hidden="true">
-          Arrows slide, Shift faster · 1–5 press · Space slides back and forth
-        </p>
+      <PadSurface name={texture.name} isOutside={isOutside} shown={shown} wake={wake}>
         {!isAwake.value && <p class="pad-hint">Press and slide</p>}
         <LampHandle />
-      </div>
+      </PadSurface>
       <p class={isOutside ? "coverage outside" : "coverage"} role="status">
         {failure.value ?? coverageText(told)}
       </p>

@@ -9,6 +9,7 @@ mod checking;
 mod columns;
 mod commands;
 mod devices;
+mod differences;
 mod explicit_args;
 mod failure;
 mod gains;

@@ -1,11 +1,15 @@
-//! Arguments that may be URIs. Inputs are downloaded before the command runs, and outputs are
-//! uploaded when it is done. The command itself sees only local files.
+//! Arguments that may be URIs, textures of libraries (`cloth.htexlib#oak`), or standard input
+//! (`-`). Inputs are copied before the command runs, and outputs are uploaded when it is done. The
+//! command itself sees only local files.
 //!
-//! The argument parsers ([`ASSET`], [`RECORDING`], [`OUTPUT`]) replace a URI by a path in a
-//! temporary folder. Printed messages show the URI again ([`with_uris`]).
+//! The argument parsers ([`ASSET`], [`RECORDING`], [`OUTPUT`]) replace such an argument by a path in
+//! a temporary folder. Printed messages show the argument again ([`with_uris`]).
 
+use std::collections::HashMap;
 use std::ffi::{OsStr, OsString};
+use std::fmt::{Display, Formatter};
 use std::fs::File;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -17,37 +21,103 @@ use htex_base::files::AtFile;
 use htex_base::finding::plain;
 use htex_base::storage::{Location, Storage, StorageError};
 use htex_format::Limits;
+use htex_format::library::{Library, LibraryFile, NamePattern, split_address};
 use tempfile::TempDir;
 
-use crate::failure::{Failure, Result};
+use crate::failure::{Failure, Result, for_file};
 
 /// An argument for an asset, which must not exceed the maximum size of an asset.
-pub(crate) const ASSET: Argument = Argument(Role::Asset);
+pub(crate) const ASSET: Argument = Argument::new(Role::Asset);
+/// An argument for an asset, or for several textures of a library (`cloth.htexlib#wood/*`), which
+/// [`each`] lists.
+pub(crate) const ASSETS: Argument = Argument { takes_several: true, ..ASSET };
 /// An argument for a recording, or for any other file that is read.
-pub(crate) const RECORDING: Argument = Argument(Role::Recording);
+pub(crate) const RECORDING: Argument = Argument::new(Role::Recording);
+/// An argument for a file that is read, or for several textures of a library.
+pub(crate) const FILES: Argument = Argument { takes_several: true, ..RECORDING };
 /// An argument for a file to write.
-pub(crate) const OUTPUT: Argument = Argument(Role::Output);
+pub(crate) const OUTPUT: Argument = Argument::new(Role::Output);
 
 /// An argument for a file to write that must be local, because the command writes other files next
 /// to it.
-pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
+pub(crate) const LOCAL_OUTPUT: Argument = Argument::new(Role::LocalOutput);
 
-/// The remote files of the current run.
-static REMOTE: Mutex<RemoteFiles> = Mutex::new(RemoteFiles { folder: None, files: Vec::new() });
+/// The copies of the current run.
+static COPIES: Mutex<Copies> = Mutex::new(Copies { folder: None, files: Vec::new() });
 /// The temporary folder. It has its own lock for a signal handler, which may run while the other
 /// lock is held.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-struct RemoteFiles {
+struct Copies {
     folder: Option<TempDir>,
-    files: Vec<RemoteCopy>,
+    files: Vec<LocalCopy>,
 }
 
-/// A remote file and its local copy.
-struct RemoteCopy {
-    location: Location,
+/// A local copy of something that is no local file.
+#[derive(Clone)]
+struct LocalCopy {
+    origin: Origin,
     local: PathBuf,
     role: Role,
+    /// The argument that brought this copy, if it brings several.
+    group: Option<PathBuf>,
+}
+
+/// What a copy is a copy of.
+#[derive(Clone, PartialEq)]
+enum Origin {
+    /// A file at a URI.
+    File(Location),
+    /// A texture of a library, or all textures whose names match.
+    Texture {
+        library: Location,
+        name: NamePattern,
+    },
+    StandardInput,
+}
+
+impl Origin {
+    /// Parses an argument. Returns `None` for a local file.
+    fn parse(argument: &OsStr, role: Role) -> Result<Option<Self>, String> {
+        let is_read = matches!(role, Role::Asset | Role::Recording);
+        if is_read && argument == "-" {
+            return Ok(Some(Self::StandardInput));
+        }
+        let parse = |text: &OsStr| Location::parse(text).map_err(|error| error.to_string());
+        match argument.to_str().and_then(split_address).filter(|_| is_read) {
+            Some((library, name)) => {
+                let (library, name) = (parse(library.as_ref())?, name.parse()?);
+                Ok(Some(Self::Texture { library, name }))
+            }
+            None => {
+                let location = parse(argument)?;
+                Ok(location.local().is_none().then_some(Self::File(location)))
+            }
+        }
+    }
+
+    /// Returns the name for a copy. Messages and formats depend on it.
+    fn file_name(&self) -> Option<String> {
+        match self {
+            Self::File(location) => location.file_name(),
+            Self::Texture { name, .. } if name.is_pattern() => Some("textures".to_owned()),
+            Self::Texture { name, .. } => {
+                let last = name.as_str().rsplit('/').next().unwrap_or_default();
+                Some(format!("{last}.htex"))
+            }
+            Self::StandardInput => Some("standard-input".to_owned()),
+        }
+    }
+}
+
+impl Display for Origin {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::File(location) => Display::fmt(location, f),
+            Self::Texture { library, name } => write!(f, "{library}#{name}"),
+            Self::StandardInput => f.write_str("-"),
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -58,9 +128,19 @@ enum Role {
     LocalOutput,
 }
 
-/// The parser of an argument that is a path or a URI.
+/// The parser of an argument that is a path or a URI, or may be something else that is copied.
 #[derive(Clone, Copy)]
-pub(crate) struct Argument(Role);
+pub(crate) struct Argument {
+    role: Role,
+    /// Whether the argument may be a pattern for several textures of a library.
+    takes_several: bool,
+}
+
+impl Argument {
+    const fn new(role: Role) -> Self {
+        Self { role, takes_several: false }
+    }
+}
 
 impl TypedValueParser for Argument {
     type Value = PathBuf;
@@ -75,17 +155,31 @@ impl TypedValueParser for Argument {
             let text = format!("{}\n", plain(&words));
             clap::Error::raw(ErrorKind::ValueValidation, text).with_cmd(command)
         };
-        let location = Location::parse(value).map_err(|error| wrong(error.to_string()))?;
-        if matches!(self.0, Role::Output | Role::LocalOutput) {
-            check_format(&location, argument).map_err(wrong)?;
+        let origin = Origin::parse(value, self.role).map_err(wrong)?;
+        if let Some(Origin::Texture { name, .. }) = &origin
+            && name.is_pattern()
+            && !self.takes_several
+        {
+            let text = value.to_string_lossy();
+            return Err(wrong(format!(
+                "{text}: one texture is needed here; `htex lib ls` lists their names"
+            )));
         }
-        if self.0 == Role::LocalOutput {
+        let location = || Location::parse(value).map_err(|error| wrong(error.to_string()));
+        if matches!(self.role, Role::Output | Role::LocalOutput) {
+            check_format(&location()?, argument).map_err(wrong)?;
+        }
+        if self.role == Role::LocalOutput {
             // `check_paths` refuses a URI.
             return PathBufValueParser::new().parse_ref(command, argument, value);
         }
-        match location.local() {
-            Some(path) => PathBufValueParser::new().parse_ref(command, argument, path.as_os_str()),
-            None => remote_files().copy_of(location, self.0).map_err(wrong),
+        match origin {
+            Some(origin) => copies().copy_of(origin, self.role).map_err(wrong),
+            None => {
+                let location = location()?;
+                let path = location.local().map_or(value, Path::as_os_str);
+                PathBufValueParser::new().parse_ref(command, argument, path)
+            }
         }
     }
 }
@@ -185,35 +279,34 @@ fn check_path(arg: &clap::Arg, path: &Path) -> Result<(), String> {
     ))
 }
 
-impl RemoteFiles {
-    /// Returns a local path that replaces a URI. The file name stays the same, because messages and
-    /// formats depend on it.
+impl Copies {
+    /// Returns a local path that replaces an argument.
     #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
-    fn copy_of(&mut self, location: Location, role: Role) -> Result<PathBuf, String> {
-        let known = self.files.iter().find(|file| file.location == location);
+    fn copy_of(&mut self, origin: Origin, role: Role) -> Result<PathBuf, String> {
+        let known = self.files.iter().find(|file| file.origin == origin);
         match known {
             Some(file) if role == Role::Output && file.role == Role::Output => {
                 return Err(format!(
-                    "{location}: two outputs would be written to it; name another file for one of them"
+                    "{origin}: two outputs would be written to it; name another file for one of them"
                 ));
             }
             Some(file) if (role == Role::Output) != (file.role == Role::Output) => {
                 return Err(format!(
-                    "{location}: it is read here, and would be lost; name another file to write"
+                    "{origin}: it is read here, and would be lost; name another file to write"
                 ));
             }
             Some(file) => return Ok(file.local.clone()),
             None => {}
         }
-        let Some(name) = location.file_name() else {
-            return Err(format!("{location}: it has no file name at its end; name a file"));
+        let Some(name) = origin.file_name() else {
+            return Err(format!("{origin}: it has no file name at its end; name a file"));
         };
-        let failed = |error| format!("no temporary folder for {location}: {error}");
+        let failed = |error| format!("no temporary folder for {origin}: {error}");
         // Each copy has its own folder, because several URIs may have the same file name.
         let folder = self.folder().map_err(failed)?.join(self.files.len().to_string());
         std::fs::create_dir(&folder).map_err(failed)?;
         let local = folder.join(name);
-        self.files.push(RemoteCopy { location, local: local.clone(), role });
+        self.files.push(LocalCopy { origin, local: local.clone(), role, group: None });
         Ok(local)
     }
 
@@ -223,7 +316,7 @@ impl RemoteFiles {
         }
         let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
         let path = folder.path().to_owned();
-        // Other users must not be able to read the copies, because the remote files may be private.
+        // Other users must not be able to read the copies, because the files may be private.
         htex_base::files::private::close(&path)?;
         *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
         self.folder = Some(folder);
@@ -231,15 +324,15 @@ impl RemoteFiles {
     }
 }
 
-fn remote_files() -> MutexGuard<'static, RemoteFiles> {
-    REMOTE.lock().unwrap_or_else(PoisonError::into_inner)
+fn copies() -> MutexGuard<'static, Copies> {
+    COPIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Forgets the files of the last run and removes their local copies.
+/// Forgets the copies of the last run and removes them.
 pub(crate) fn clear() {
-    let mut remote = remote_files();
-    remote.files.clear();
-    remote.folder = None;
+    let mut copies = copies();
+    copies.files.clear();
+    copies.folder = None;
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
 }
 
@@ -251,35 +344,64 @@ pub(crate) fn remove_copies() {
     }
 }
 
-/// Returns the remote files with a certain role.
-fn files(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
-    let remote = remote_files();
-    let wanted = remote.files.iter().filter(|file| is_wanted(file.role));
-    wanted.map(|file| (file.location.clone(), file.local.clone(), file.role)).collect()
+/// Returns the remote files to write, with their local copies.
+fn outputs() -> Vec<(Location, PathBuf)> {
+    let copies = copies();
+    let outputs = copies.files.iter().filter(|file| file.role == Role::Output);
+    let located = outputs.filter_map(|file| match &file.origin {
+        Origin::File(location) => Some((location.clone(), file.local.clone())),
+        _ => None,
+    });
+    located.collect()
+}
+
+/// Replaces each argument for several textures by the copies of these textures. Other arguments
+/// stay.
+pub(crate) fn each(arguments: &[PathBuf]) -> Vec<PathBuf> {
+    let copies = copies();
+    let own = |argument: &PathBuf| {
+        let is_own = |file: &&LocalCopy| file.group.as_ref() == Some(argument);
+        let own: Vec<PathBuf> =
+            copies.files.iter().filter(is_own).map(|file| file.local.clone()).collect();
+        if own.is_empty() { vec![argument.clone()] } else { own }
+    };
+    arguments.iter().flat_map(own).collect()
 }
 
 /// Keeps the local copies after the command has ended.
 fn keep() {
-    let mut remote = remote_files();
+    let mut copies = copies();
     // From now on, messages name the copies themselves.
-    remote.files.clear();
+    copies.files.clear();
     // A signal must not remove what is kept.
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
-    if let Some(folder) = remote.folder.take() {
+    if let Some(folder) = copies.folder.take() {
         let _ = folder.keep();
     }
 }
 
-/// Whether a path is the copy of a remote file.
+/// Whether a path is a copy of something that is no local file.
 pub(crate) fn is_copy(path: &Path) -> bool {
-    remote_files().files.iter().any(|file| file.local == path)
+    copies().files.iter().any(|file| file.local == path)
 }
 
-/// Replaces the paths of local copies in a text by their URIs, both in plain text and inside JSON.
+/// Returns the name of a copy's texture in its library; `None` for all other files.
+pub(crate) fn texture_name(path: &Path) -> Option<PathBuf> {
+    let copies = copies();
+    let file = copies.files.iter().find(|file| file.local == path)?;
+    match &file.origin {
+        Origin::Texture { name, .. } => Some(PathBuf::from(format!("{name}.htex"))),
+        _ => None,
+    }
+}
+
+/// Replaces the paths of local copies in a text by what they are copies of, both in plain text and
+/// inside JSON.
 pub(crate) fn with_uris(text: &str) -> String {
     let mut text = text.to_owned();
-    for file in &remote_files().files {
-        let (copy, uri) = (file.local.display().to_string(), file.location.to_string());
+    // Copies of one argument are in its folder, and come after it.
+    for file in copies().files.iter().rev() {
+        let (copy, uri) = (file.local.display().to_string(), file.origin.to_string());
         let escaped = |text: &str| serde_json::Value::from(text).to_string();
         let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
         if text.contains(&copy) || text.contains(&in_json(&copy)) {
@@ -296,41 +418,113 @@ pub(crate) fn with_uris(text: &str) -> String {
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
 /// Checks that the outputs can be written, as far as this is possible without a network request.
-/// Then downloads the inputs.
-#[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
+/// Then makes the copies of the inputs.
 pub(crate) fn download() -> Result<()> {
-    let files = files(|_| true);
+    let files = copies().files.clone();
     if files.is_empty() {
         return Ok(());
     }
     let storage = Storage::from_environment()?;
     // Checked before any download, because a wrong output would make the download useless.
-    for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
-        storage.check_writable(location)?;
+    for (location, _) in outputs() {
+        storage.check_writable(&location)?;
     }
-    for (location, local, role) in files {
-        let most_bytes = match role {
+    let mut libraries = HashMap::new();
+    for file in files {
+        let most_bytes = match file.role {
             Role::Output | Role::LocalOutput => continue,
             Role::Asset => Limits::default().file_bytes,
             Role::Recording => MOST_RECORDING_BYTES,
         };
-        let mut options = File::options();
-        htex_base::files::private::only_user(&mut options);
-        // `create_new` follows no link. The folder is new, so nothing is there.
-        let file = options.write(true).create_new(true).open(&local).writing(&local)?;
-        storage.download(&location, file, most_bytes)?;
+        match &file.origin {
+            Origin::File(location) => {
+                storage.download(location, create(&file.local)?, most_bytes)?;
+            }
+            Origin::StandardInput => {
+                // The reader of assets refuses the additional byte.
+                let mut input = std::io::stdin().lock().take(most_bytes.saturating_add(1));
+                std::io::copy(&mut input, &mut create(&file.local)?).writing(&file.local)?;
+            }
+            Origin::Texture { library, name } => {
+                let opened = match libraries.remove(library) {
+                    Some(opened) => opened,
+                    None => Library::open_located(&storage, library)
+                        .map_err(for_file(library.to_string().as_ref()))?,
+                };
+                take_out(&opened, library, name, &file)?;
+                libraries.insert(library.clone(), opened);
+            }
+        }
     }
     Ok(())
 }
 
+/// Copies the textures of a library that an argument names.
+fn take_out(
+    opened: &Library<LibraryFile>,
+    library: &Location,
+    name: &NamePattern,
+    file: &LocalCopy,
+) -> Result<()> {
+    let shown = PathBuf::from(library.to_string());
+    let write = |path: &Path, bytes: &[u8]| {
+        create(path).and_then(|mut file| Ok(file.write_all(bytes).writing(path)?))
+    };
+    if !name.is_pattern() {
+        let bytes = opened.get(name.as_str()).map_err(for_file(&shown))?;
+        return write(&file.local, &bytes);
+    }
+    let (mut found, mut ratio) = (Vec::new(), opened.ratio());
+    for entry in opened.entries() {
+        let entry = entry.map_err(for_file(&shown))?;
+        if !name.matches(&entry.name) {
+            continue;
+        }
+        ratio.add(&entry).map_err(for_file(&shown))?;
+        let local = file.local.join(format!("{}.htex", entry.name));
+        let folder = local.parent().unwrap_or(&file.local);
+        create_folder(folder).writing(folder)?;
+        write(&local, &opened.read(&entry).map_err(for_file(&shown))?)?;
+        let name = entry.name.parse().map_err(Failure::Other)?;
+        found.push(LocalCopy {
+            origin: Origin::Texture { library: library.clone(), name },
+            local,
+            role: file.role,
+            group: Some(file.local.clone()),
+        });
+    }
+    if found.is_empty() {
+        let origin = &file.origin;
+        return Err(Failure::Other(format!(
+            "{origin}: no texture has such a name; `htex lib ls` lists their names"
+        )));
+    }
+    copies().files.extend(found);
+    Ok(())
+}
+
+#[allow(clippy::disallowed_methods, reason = "inside a new temporary folder of this user")]
+fn create_folder(folder: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)
+}
+
+/// Creates the file of a copy.
+#[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
+fn create(path: &Path) -> Result<File> {
+    let mut options = File::options();
+    htex_base::files::private::only_user(&mut options);
+    // `create_new` follows no link. The folder is new, so nothing is there.
+    Ok(options.write(true).create_new(true).open(path).writing(path)?)
+}
+
 /// Uploads the outputs of a command that has succeeded. Keeps the local copies if an upload fails.
 pub(crate) fn upload() -> Result<()> {
-    let outputs = files(|role| role == Role::Output);
+    let outputs = outputs();
     if outputs.is_empty() {
         return Ok(());
     }
     let storage = Storage::from_environment()?;
-    for (location, local, _) in outputs {
+    for (location, local) in outputs {
         let written = storage.write_file(&location, &local);
         written.map_err(|error| kept(&local, error))?;
     }

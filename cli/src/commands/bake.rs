@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use crate::failure::{Failure, Result, for_file};
+use crate::located;
 use crate::output::{show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -30,6 +31,7 @@ const MOST: i64 = BakeLimits::MOST as i64;
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     /// Model of the asset to use, by short name or id [default: the model with the smallest

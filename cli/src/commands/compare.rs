@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{
-    AuthorError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, segment_take,
+    AuthorError, ComparedModel, Difference, Exploration, TextureDifference, TextureSpectrum,
+    compare, segment_take,
 };
 use htex_base::finding::{Notice, plain};
 use htex_format::Measure;
@@ -13,16 +14,18 @@ use serde::Serialize;
 use super::validate::{Kind, kind};
 use crate::assets::short_name;
 use crate::columns::{Column, cells, columns, headings};
+use crate::differences;
 use crate::failure::{Failure, Result};
 use crate::located;
 use crate::output::{note, show, shown, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
 
-/// Compare an asset with a recording
+/// Compare an asset with a recording or another asset
 ///
 /// Measures the difference between a recording and each model of an asset, or between two
-/// recordings.
+/// recordings. Of two assets, the command prints which metadata, conditions and models differ, and
+/// compares the models that both have at each condition of the first asset.
 ///
 /// htex evaluates the models at the recording's speed and force if both are known. Otherwise htex
 /// evaluates the models at the asset's first condition (a pair of a speed and a force), or at the
@@ -31,8 +34,8 @@ use crate::recordings::RecordingArgs;
 /// threshold.
 #[derive(Args)]
 pub(crate) struct Compare {
-    #[arg(help = format!("The recording: {}", format_names()))]
-    #[arg(value_parser = located::RECORDING)]
+    #[arg(help = format!("The recording ({}), or an asset to compare with another one", format_names()))]
+    #[arg(value_parser = located::RECORDING, value_name = "RECORDING|ASSET")]
     recording: PathBuf,
 
     /// The asset, or another recording
@@ -64,6 +67,25 @@ struct Comparison {
     warnings: Vec<Notice>,
 }
 
+/// Two assets, and how they differ.
+#[derive(Serialize)]
+struct ComparedAssets {
+    asset: String,
+    other: String,
+    #[serde(flatten)]
+    difference: TextureDifference,
+}
+
+impl Display for ComparedAssets {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let lines = differences::lines(&self.difference);
+        if lines.is_empty() {
+            return writeln!(f, "nothing differs");
+        }
+        lines.iter().try_for_each(|line| writeln!(f, "{line}"))
+    }
+}
+
 /// The second recording, and how far it is from the first one.
 #[derive(Serialize)]
 struct OtherRecording {
@@ -80,6 +102,9 @@ impl Compare {
         // Checked before any file is parsed, so that swapped arguments lead to advice and not to a
         // parser's error.
         self.check_kinds()?;
+        if kind(&self.recording) == Kind::Asset {
+            return self.assets();
+        }
         let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
         let mut comparison = Comparison {
             recording: self.recording.display().to_string(),
@@ -111,20 +136,27 @@ impl Compare {
     /// Refuses two files that cannot be compared, and says what to do instead.
     fn check_kinds(&self) -> Result<()> {
         let advice = match (kind(&self.recording), kind(&self.other)) {
-            (Kind::Asset, Kind::Asset) => {
-                "both are assets, and a recording is compared with an asset or another recording; give the recording first, or see what each \
-                 holds with `htex info`"
-            }
+            (Kind::Asset, Kind::Asset) => return Ok(()),
             (Kind::Asset, _) => "it is an asset; give the recording first, then the asset",
             (Kind::Library, Kind::Library) => {
                 "both are libraries; compare them with `htex lib diff`"
             }
             (Kind::Library, _) | (_, Kind::Library) => {
-                "a library holds many textures; take one out with `htex lib unpack LIBRARY NAME -o DIR` and compare that"
+                "a library holds many textures; name one, as in LIBRARY#NAME"
             }
             _ => return Ok(()),
         };
         Err(Failure::Usage(format!("{}: {advice}", shown(&self.recording))))
+    }
+
+    /// Compares two assets.
+    fn assets(&self) -> Result {
+        let open = |path: &Path| self.player.open(path);
+        let (first, second) = (open(&self.recording)?, open(&self.other)?);
+        let difference = TextureDifference::new(&first, &second)?;
+        let (asset, other) = (&self.recording, &self.other);
+        let [asset, other] = [asset, other].map(|path| path.display().to_string());
+        show(&ComparedAssets { asset, other, difference }, self.json)
     }
 
     fn representations(

@@ -10,7 +10,7 @@ use htex_base::files::AtFile;
 use serde_json::Value;
 
 use crate::assets::{check_metadata, read_asset, write_and_show};
-use crate::commands::validate::{refuse_library, refuse_more};
+use crate::commands::validate::refuse_library;
 use crate::failure::{Failure, Result};
 use crate::located;
 use crate::output::shown;
@@ -50,7 +50,12 @@ pub(crate) struct Edit {
 
 impl Edit {
     pub(crate) fn run(mut self) -> Result {
-        refuse_more("edit", &self.more)?;
+        if let Some(second) = self.more.first() {
+            let file = shown(second);
+            return Err(Failure::Usage(format!(
+                "{file}: one asset is edited; run the command for each"
+            )));
+        }
         let metadata = std::mem::take(&mut self.metadata);
         if metadata.is_empty() && self.extension.is_empty() {
             return Err(Failure::usage(

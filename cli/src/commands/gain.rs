@@ -9,6 +9,7 @@ use htex_scene::{Gain as StoredGain, Gains, Renderer, START_DB, factor_of_db};
 use crate::commands::play;
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
+use crate::located;
 use crate::output::{print, shown};
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
@@ -36,6 +37,7 @@ const LARGE_STEP_DB: f64 = 4.0;
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
+    #[arg(value_parser = located::ASSET)]
     file: PathBuf,
 
     /// Name of the participant, under which htex stores the gain

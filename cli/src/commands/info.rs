@@ -1,17 +1,17 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_host::Registry;
 
 use crate::assets::AssetSummary;
-use crate::commands::validate::{refuse_library, refuse_more};
-use crate::failure::{Result, for_file};
+use crate::commands::validate::refuse_library;
+use crate::failure::{Exit, Result, for_file};
 use crate::located;
-use crate::output::show;
+use crate::output::{print, print_json, show};
 
-/// Show the contents and the errors of an asset
+/// Show the contents and the errors of assets
 ///
-/// Prints the asset's metadata, and a table with a row for each model at each condition (a pair of
+/// Prints an asset's metadata, and a table with a row for each model at each condition (a pair of
 /// a speed and a force). `level` is the RMS in the asset's unit. The other columns compare the
 /// model's spectrum with the recorded spectrum: `corr.` is the Pearson correlation, `bands/dB` the
 /// error over nine overlapping bands, `third-oct/dB` the error over third octaves, and `log-sp/dB`
@@ -19,36 +19,48 @@ use crate::output::show;
 /// model rendered. `bytes` is the size of the model's parameters.
 #[derive(Args)]
 pub(crate) struct Info {
-    /// The asset
-    #[arg(value_parser = located::ASSET)]
-    asset: PathBuf,
+    /// The assets
+    #[arg(required = true, value_parser = located::ASSETS)]
+    assets: Vec<PathBuf>,
 
-    /// Further assets. The command refuses further assets, and says what to do instead
-    #[arg(hide = true)]
-    more: Vec<PathBuf>,
-
-    /// Print JSON instead of a table
+    /// Print JSON instead of a table: an object, or an array if you ask for several assets
     #[arg(long)]
     json: bool,
 }
 
 impl Info {
     pub(crate) fn run(self) -> Result {
-        refuse_more("info", &self.more)?;
-        refuse_library(&self.asset)?;
-        let asset = htex_format::Asset::open(&self.asset).map_err(for_file(&self.asset))?;
-        let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
-        let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
-        let models = Registry::builtin();
-        let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
-        let representations = asset.manifest.representations.iter();
-        for representation in representations.filter(|r| !embeds(&r.model)) {
-            let model = htex::play::model_of(&models, representation).ok();
-            let order = model.map(|model| htex::play::field_order(representation, model));
-            if let Some(Err(error)) = order {
-                summary.notes.push(error.to_string());
-            }
+        let files = located::each(&self.assets);
+        if let ([file], true) = (&files[..], files == self.assets) {
+            return show(&summary(file)?, self.json);
         }
-        show(&summary, self.json)
+        let summaries = files.iter().map(|file| summary(file));
+        if self.json {
+            print_json(&summaries.collect::<Result<Vec<_>>>()?)?;
+            return Ok(Exit::SUCCESS);
+        }
+        for (i, summary) in summaries.enumerate() {
+            let line = if i == 0 { "" } else { "\n" };
+            print(&format!("{line}{}", summary?))?;
+        }
+        Ok(Exit::SUCCESS)
     }
+}
+
+fn summary(file: &Path) -> Result<AssetSummary> {
+    refuse_library(file)?;
+    let asset = htex_format::Asset::open(file).map_err(for_file(file))?;
+    let bytes = std::fs::metadata(file).map_or(0, |m| m.len());
+    let mut summary = AssetSummary::new(file, bytes, &asset);
+    let models = Registry::builtin();
+    let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
+    let representations = asset.manifest.representations.iter();
+    for representation in representations.filter(|r| !embeds(&r.model)) {
+        let model = htex::play::model_of(&models, representation).ok();
+        let order = model.map(|model| htex::play::field_order(representation, model));
+        if let Some(Err(error)) = order {
+            summary.notes.push(error.to_string());
+        }
+    }
+    Ok(summary)
 }

@@ -38,7 +38,7 @@ use crate::wasm_limits::WasmLimit;
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
-    #[arg(required = true, value_parser = located::RECORDING)]
+    #[arg(required = true, value_parser = located::FILES)]
     files: Vec<PathBuf>,
 
     /// In assets, check the extension with this name against the JSON Schema in FILE (draft
@@ -65,7 +65,8 @@ pub(crate) struct Validate {
 }
 
 impl Validate {
-    pub(crate) fn run(self) -> Result {
+    pub(crate) fn run(mut self) -> Result {
+        self.files = located::each(&self.files);
         let schemas = self
             .extension_schema
             .iter()
@@ -178,25 +179,19 @@ pub(crate) fn kind(path: &Path) -> Kind {
     }
 }
 
-/// Refuses a library where a single asset is needed, and says what to do.
+/// Whether a file is a library.
+pub(crate) fn is_library(path: &Path) -> bool {
+    kind(path) == Kind::Library
+}
+
+/// Refuses a library for a command that takes one asset, and says what to do.
 pub(crate) fn refuse_library(path: &Path) -> Result<()> {
-    if kind(path) != Kind::Library {
+    if !is_library(path) {
         return Ok(());
     }
     let file = shown(path);
     Err(Failure::Usage(format!(
-        "{file}: it is a library, which holds many textures: `htex lib ls` lists them, and `htex lib unpack LIBRARY NAME -o DIR` takes one out"
-    )))
-}
-
-/// Refuses additional assets for a command that takes only one, and says what to do.
-pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<()> {
-    let Some(second) = more.first() else {
-        return Ok(());
-    };
-    let file = shown(second);
-    Err(Failure::Usage(format!(
-        "{file}: `htex {command}` takes one asset; run it for each. `htex compare RECORDING ASSET` measures assets against their recording"
+        "{file}: it is a library, which holds many textures: name one, as in {file}#NAME; `htex lib ls` lists the names"
     )))
 }
 

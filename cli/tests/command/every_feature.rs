@@ -2,9 +2,11 @@
 //! that is expected, no number that is infinite or none, and one choice of the model in all
 //! commands.
 
+use std::fs::File;
+use std::process::Stdio;
 use std::sync::LazyLock;
 
-use crate::common::{Files, Place};
+use crate::common::{Files, Place, Run, entries};
 use htex_format::Asset;
 use serde_json::json;
 
@@ -129,6 +131,69 @@ fn every_command_takes_a_file_of_every_feature() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A texture of a library, and standard input, are what a file is.
+#[test]
+fn every_command_takes_a_texture_of_a_library_and_standard_input() {
+    let place = place();
+    let pack = ["lib", "pack", "all.htexlib", "one.htex", "three.htex"];
+    assert_eq!(place.run(&pack).code(), 0);
+    place.scene("in-library.scene.json", "all.htexlib#three", &json!({ "duration_s": 0.2 }));
+    let outcome = |arguments: &[&str], input: Option<&str>| {
+        let mut command = place.command(arguments);
+        command.stdin(
+            input.map_or(Stdio::null(), |name| File::open(place.path(name)).unwrap().into()),
+        );
+        let run = Run::of(command.output().unwrap());
+        let files: Vec<_> = entries(place.path("").as_path())
+            .into_iter()
+            .filter(|name| name.starts_with("out."))
+            .map(|name| (std::fs::read(place.path(&name)).unwrap(), name))
+            .collect();
+        for (_, name) in &files {
+            std::fs::remove_file(place.path(name)).unwrap();
+        }
+        (run.code(), run.text(), files)
+    };
+    // The output of `lib pack` is read by the next command, and names are those of files.
+    let commands = COMMANDS.iter().filter(|c| c.contains(&"FILE") && c[0] != "lib");
+    for command in commands {
+        let with = |name: &str, input: Option<&str>| {
+            let arguments: Vec<&str> =
+                command.iter().map(|a| if *a == "FILE" { name } else { a }).collect();
+            outcome(&arguments, input)
+        };
+        let (code, text, files) = with("three.htex", None);
+        assert_eq!(code, 0, "{command:?}");
+        for (name, input) in [("all.htexlib#three", None), ("-", Some("three.htex"))] {
+            let (code, other, made) = with(name, input);
+            assert_eq!((code, other), (0, text.replace("three.htex", name)), "{command:?}");
+            assert!(made == files, "{command:?} of {name}");
+        }
+    }
+    let render = |scene: &str| outcome(&["render", scene, "-o", "out.wav"], None).2;
+    assert!(render("in-library.scene.json") == render("three.htex.scene.json"));
+
+    let two = place.json(&["info", "all.htexlib#*", "--json"]);
+    let names = ["all.htexlib#one", "all.htexlib#three"];
+    assert_eq!([&two[0]["asset"], &two[1]["asset"]], names);
+    let valid = place.json(&["validate", "all.htexlib#t*", "--json"]);
+    assert_eq!(valid[0]["file"], names[1], "{valid}");
+    for (arguments, words) in [
+        (
+            &["info", "all.htexlib#thre"][..],
+            "all.htexlib: there is no texture thre in the library; its most similar names are three",
+        ),
+        (&["info", "all.htexlib#x*"], "all.htexlib#x*: no texture has such a name"),
+        (&["synth", "all.htexlib#*", "-o", "out.wav"], "one texture is needed here"),
+        (&["info", "none.htexlib#one"], "none.htexlib"),
+        (&["edit", "all.htexlib#one", "--name", "Other"], "name another file to write by -o"),
+        (&["info", "all.htexlib"], "all.htexlib#NAME"),
+    ] {
+        let run = place.run(arguments);
+        assert!(run.code() != 0 && run.error().contains(words), "{arguments:?}: {}", run.error());
+    }
 }
 
 /// Results of a command, which the next one would not overwrite.

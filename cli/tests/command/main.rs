@@ -28,6 +28,8 @@ mod grid;
 mod lab;
 mod library;
 mod library_builds;
+#[cfg(feature = "build")]
+mod library_changes;
 #[cfg(target_os = "linux")]
 mod memory;
 mod metadata;

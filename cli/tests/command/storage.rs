@@ -126,6 +126,28 @@ fn files_elsewhere_are_those_here() {
     );
 }
 
+/// Of a library elsewhere, only its parts are read: here the start of the file and the texture.
+#[test]
+fn a_texture_of_a_library_elsewhere_is_read_alone() {
+    let bench = Bench::new();
+    let (place, server) = (&bench.place, &bench.server);
+    place.write("cloth.htex", asset());
+    let pack = ["lib", "pack", "all.htexlib", "cloth.htex", "--unlicensed"];
+    assert_eq!(place.run(&pack).code(), 0);
+    server.put("surfaces/all.htexlib", &std::fs::read(place.path("all.htexlib")).unwrap());
+    let uri = "s3://surfaces/all.htexlib#cloth";
+    let there = bench.run(&["spectrum", uri, "--json"]);
+    assert_eq!(there.code(), 0, "{}", there.error());
+    assert_eq!(there.text(), bench.run(&["spectrum", "cloth.htex", "--json"]).text());
+    let ranges = server.requests().into_iter().filter(|r| r.path.contains("all.htexlib"));
+    assert!(ranges.count() <= 3);
+    let pattern = bench.run(&["validate", "s3://surfaces/all.htexlib#*"]);
+    assert!(pattern.text().starts_with(&format!("{uri}: valid\n")), "{}", pattern.text());
+    bench
+        .run(&["info", "s3://surfaces/all.htexlib#clothe"])
+        .failed(1, &["similar names are cloth"]);
+}
+
 /// A scene is here, and what is rendered of it goes elsewhere.
 #[test]
 fn a_scene_is_rendered_to_a_file_elsewhere() {

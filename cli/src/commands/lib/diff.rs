@@ -1,18 +1,24 @@
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
 
 use clap::Args;
+use htex_author::TextureDifference;
+use htex_base::finding::plain;
+use htex_format::Asset;
 use htex_format::library::{Entry, Library, LibraryFile};
 use serde::Serialize;
 
 use super::LibraryArg;
-use crate::failure::{Exit, Result, for_file};
-use crate::output::show;
+use crate::differences;
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::output::{bar, print, show};
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 ///
 /// Prints `-` before a texture that only the first library has, `+` before a texture that only the
-/// second library has, and `~` before a texture that differs between the two libraries.
+/// second library has, and `~` before a texture that differs between the two libraries. With
+/// --details, it also prints `>` before a texture that has another name, and what differs.
 #[derive(Args)]
 pub(crate) struct Diff {
     /// Path or URI of the first library
@@ -22,6 +28,19 @@ pub(crate) struct Diff {
     /// Path or URI of the second library
     #[arg(value_parser = LibraryArg::parser())]
     b: LibraryArg,
+
+    /// Also say what differs: metadata, conditions, models, and the spectra of the models
+    #[arg(long)]
+    details: bool,
+
+    /// Print the details as Markdown, e.g. for a changelog
+    #[arg(long, requires = "details", conflicts_with = "json")]
+    markdown: bool,
+
+    /// With --details, fail only if the felt difference of a texture is above this limit, in
+    /// decibels, in a third-octave band or in all bands together
+    #[arg(long, value_name = "felt=DB", requires = "details", value_parser = felt_limit)]
+    fail_on: Option<f64>,
 
     /// Print JSON
     #[arg(long)]
@@ -36,6 +55,30 @@ struct Differences {
     changed: Vec<String>,
 }
 
+/// What differs.
+#[derive(Default, Serialize)]
+struct Details {
+    removed: Vec<String>,
+    added: Vec<String>,
+    /// Textures with another name.
+    renamed: Vec<Renamed>,
+    changed: Vec<Changed>,
+}
+
+#[derive(Serialize)]
+struct Renamed {
+    from: String,
+    to: String,
+}
+
+/// A texture that differs, and how.
+#[derive(Serialize)]
+struct Changed {
+    name: String,
+    #[serde(flatten)]
+    difference: TextureDifference,
+}
+
 /// An iterator over a library's entries that also shows the next entry before it is taken.
 struct Walk<'a> {
     library: &'a LibraryArg,
@@ -43,13 +86,91 @@ struct Walk<'a> {
     next: Option<Entry>,
 }
 
+/// A texture of a library, as the comparison finds it.
+enum Found {
+    Removed(Entry),
+    Added(Entry),
+    Changed(Entry, Entry),
+}
+
 impl Diff {
     pub(crate) fn run(self) -> Result {
         let (a, b) = (self.a.open()?, self.b.open()?);
-        let differences = compare(Walk::new(&self.a, &a)?, Walk::new(&self.b, &b)?)?;
-        show(&differences, self.json)?;
-        Ok(Exit::ok_if(differences.is_empty()))
+        // Equal indexes have the same textures under the same names.
+        let is_same = a.index().blake3() == b.index().blake3();
+        let found = if is_same {
+            Vec::new()
+        } else {
+            compare(Walk::new(&self.a, &a)?, Walk::new(&self.b, &b)?)?
+        };
+        if !self.details {
+            let differences = Differences::new(found);
+            show(&differences, self.json)?;
+            return Ok(Exit::ok_if(differences.is_empty()));
+        }
+        let details = self.details(&a, &b, found)?;
+        if self.markdown {
+            print(&details.markdown())?;
+        } else {
+            show(&details, self.json)?;
+        }
+        Ok(Exit::ok_if(match self.fail_on {
+            None => details.is_empty(),
+            Some(limit) => !details.changed.iter().any(|changed| changed.is_above(limit)),
+        }))
     }
+
+    fn details(
+        &self,
+        a: &Library<LibraryFile>,
+        b: &Library<LibraryFile>,
+        found: Vec<Found>,
+    ) -> Result<Details> {
+        let mut details = Details::default();
+        let (mut added, mut changed) = (BTreeMap::new(), Vec::new());
+        let mut removed = Vec::new();
+        for one in found {
+            match one {
+                Found::Removed(entry) => removed.push(entry),
+                Found::Added(entry) => {
+                    added.entry(entry.blake3).or_insert_with(Vec::new).push(entry.name);
+                }
+                Found::Changed(a, b) => changed.push((a, b)),
+            }
+        }
+        for entry in removed {
+            match added.get_mut(&entry.blake3).and_then(Vec::pop) {
+                Some(to) => details.renamed.push(Renamed { from: entry.name, to }),
+                None => details.removed.push(entry.name),
+            }
+        }
+        details.added = added.into_values().flatten().collect();
+        details.added.sort_unstable();
+        let bar = bar(changed.len() as u64);
+        for (of_a, of_b) in changed {
+            let open = |library: &Library<LibraryFile>, argument: &LibraryArg, entry: &Entry| {
+                let bytes = library.read(entry).map_err(for_file(&argument.shown()))?;
+                let asset = Asset::from_bytes(&bytes);
+                let asset =
+                    asset.map_err(|error| Failure::from(error).in_file(&argument.shown()))?;
+                Ok::<_, Failure>(htex::Texture::new(asset).with_embedded())
+            };
+            let (first, second) = (open(a, &self.a, &of_a)?, open(b, &self.b, &of_b)?);
+            let difference = TextureDifference::new(&first, &second)
+                .map_err(|error| Failure::Other(format!("{}: {error}", plain(&of_a.name))))?;
+            details.changed.push(Changed { name: of_a.name, difference });
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        Ok(details)
+    }
+}
+
+/// Reads `felt=DB`.
+fn felt_limit(text: &str) -> Result<f64, String> {
+    let number = text.strip_prefix("felt=").and_then(|text| text.parse().ok());
+    let number = number.filter(|limit: &f64| limit.is_finite() && *limit >= 0.0);
+    number.ok_or_else(|| "give felt= and decibels, such as felt=1.6".to_owned())
 }
 
 impl<'a> Walk<'a> {
@@ -67,29 +188,41 @@ impl<'a> Walk<'a> {
 }
 
 /// Compares two libraries by walking through both in the order of the names.
-fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences> {
-    let mut differences = Differences::default();
+fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Vec<Found>> {
+    let mut found = Vec::new();
     loop {
         let order = match (&a.next, &b.next) {
-            (None, None) => return Ok(differences),
+            (None, None) => return Ok(found),
             (Some(_), None) => Ordering::Less,
             (None, Some(_)) => Ordering::Greater,
             (Some(a), Some(b)) => a.name.cmp(&b.name),
         };
-        // Only one entry of each library is in memory, because a library may have any number of
-        // them.
+        // Only one entry of each library is in memory, and those that differ, because a library may
+        // have any number of them.
         let ours = if order.is_le() { a.step()? } else { None };
         let theirs = if order.is_ge() { b.step()? } else { None };
         match (ours, theirs) {
-            (Some(a), Some(b)) if a.blake3 != b.blake3 => differences.changed.push(a.name),
-            (Some(a), None) => differences.only_in_a.push(a.name),
-            (None, Some(b)) => differences.only_in_b.push(b.name),
+            (Some(a), Some(b)) if a.blake3 != b.blake3 => found.push(Found::Changed(a, b)),
+            (Some(a), None) => found.push(Found::Removed(a)),
+            (None, Some(b)) => found.push(Found::Added(b)),
             _ => {}
         }
     }
 }
 
 impl Differences {
+    fn new(found: Vec<Found>) -> Self {
+        let mut all = Self::default();
+        for one in found {
+            match one {
+                Found::Removed(entry) => all.only_in_a.push(entry.name),
+                Found::Added(entry) => all.only_in_b.push(entry.name),
+                Found::Changed(entry, _) => all.changed.push(entry.name),
+            }
+        }
+        all
+    }
+
     fn is_empty(&self) -> bool {
         self.only_in_a.is_empty() && self.only_in_b.is_empty() && self.changed.is_empty()
     }
@@ -100,6 +233,69 @@ impl Display for Differences {
         for (sign, names) in [('-', &self.only_in_a), ('+', &self.only_in_b), ('~', &self.changed)]
         {
             names.iter().try_for_each(|name| writeln!(f, "{sign} {name}"))?;
+        }
+        Ok(())
+    }
+}
+
+impl Changed {
+    fn is_above(&self, limit_db: f64) -> bool {
+        self.difference.felt().is_some_and(|felt| {
+            felt.largest_error_db.abs() > limit_db || felt.total_error_db.abs() > limit_db
+        })
+    }
+
+    /// Returns one line for each difference.
+    fn lines(&self) -> Vec<String> {
+        let lines = differences::lines(&self.difference);
+        // Such as another compression, or another provenance.
+        if lines.is_empty() { vec!["only its bytes".to_owned()] } else { lines }
+    }
+}
+
+impl Details {
+    fn is_empty(&self) -> bool {
+        self.removed.is_empty()
+            && self.added.is_empty()
+            && self.renamed.is_empty()
+            && self.changed.is_empty()
+    }
+
+    fn markdown(&self) -> String {
+        let mut parts = Vec::new();
+        let mut part = |title: &str, lines: Vec<String>| {
+            if !lines.is_empty() {
+                parts.push(format!("### {title}\n\n{}\n", lines.join("\n")));
+            }
+        };
+        let named = |names: &[String]| names.iter().map(|name| format!("- `{name}`")).collect();
+        part("Added", named(&self.added));
+        part("Removed", named(&self.removed));
+        let renamed = self.renamed.iter();
+        part(
+            "Renamed",
+            renamed.map(|Renamed { from, to }| format!("- `{from}` → `{to}`")).collect(),
+        );
+        let changed = self.changed.iter().flat_map(|changed| {
+            let lines = changed.lines().into_iter().map(|line| format!("  - {line}"));
+            std::iter::once(format!("- `{}`", changed.name)).chain(lines)
+        });
+        part("Changed", changed.collect());
+        parts.join("\n")
+    }
+}
+
+impl Display for Details {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        for (sign, names) in [('-', &self.removed), ('+', &self.added)] {
+            names.iter().try_for_each(|name| writeln!(f, "{sign} {name}"))?;
+        }
+        for Renamed { from, to } in &self.renamed {
+            writeln!(f, "> {from} → {to}")?;
+        }
+        for changed in &self.changed {
+            writeln!(f, "~ {}", changed.name)?;
+            changed.lines().iter().try_for_each(|line| writeln!(f, "    {line}"))?;
         }
         Ok(())
     }

@@ -2,9 +2,13 @@
 
 mod cat;
 mod diff;
+#[cfg(feature = "build")]
+mod edit;
 mod find;
 mod listing;
 mod ls;
+#[cfg(feature = "build")]
+mod merge;
 mod pack;
 mod unpack;
 mod verify;
@@ -21,7 +25,7 @@ pub(super) use verify::check;
 use super::subcommands;
 use crate::failure::{Result, for_file};
 
-/// Pack, list, verify and unpack libraries
+/// Pack, change, list, verify and unpack libraries
 ///
 /// A library is one file (.htexlib) that contains any number of textures. Data that several
 /// textures have in common is stored once.
@@ -37,6 +41,10 @@ pub(crate) struct Lib {
 subcommands! {
     Command {
         Pack(pack::Pack),
+        #[cfg(feature = "build")]
+        Edit(edit::Edit),
+        #[cfg(feature = "build")]
+        Merge(merge::Merge),
         Unpack(unpack::Unpack),
         Ls(ls::Ls),
         Find(find::Find),
@@ -71,6 +79,11 @@ impl LibraryArg {
     /// Returns the file if it is on this machine.
     fn local(&self) -> Option<&Path> {
         self.0.local()
+    }
+
+    /// Returns how many reads should run at the same time.
+    fn reads_at_once(&self) -> usize {
+        if self.local().is_some() { 1 } else { 8 }
     }
 
     /// Returns the path or URI for messages.

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_base::files::AtFile;
-use htex_format::library::{EXTENSION, LibraryError, PackSummary, Writer};
+use htex_format::library::{EXTENSION, Library, LibraryError, PackSummary, Writer};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use crate::assets::read_asset;
+use crate::commands::validate::is_library;
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
 use crate::output::{bar, show, shown};
@@ -17,7 +18,8 @@ use crate::outputs::check_outputs;
 /// Pack textures into a library.
 ///
 /// In the library, a texture has the name of its file, without `.htex`. A texture in a folder is
-/// named after its path in that folder, e.g. wood/oak. The same textures give the same library, in
+/// named after its path in that folder, e.g. wood/oak. Textures of another library keep their names.
+/// The same textures give the same library, in
 /// any order and on any machine. Each texture must state a licence (`htex edit --license`), because
 /// libraries are meant to be passed on.
 #[derive(Args)]
@@ -26,8 +28,9 @@ pub(crate) struct Pack {
     #[arg(value_name = "OUT.htexlib", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// Textures to pack, and folders whose textures to pack
-    #[arg(required = true, value_name = "FILE|DIR", value_parser = located::ASSET)]
+    /// Textures to pack, and folders and libraries whose textures to pack. LIBRARY#GLOB is part of a
+    /// library
+    #[arg(required = true, value_name = "FILE|DIR|LIBRARY", value_parser = located::FILES)]
     inputs: Vec<PathBuf>,
 
     /// Name of the library [default: the file's name]
@@ -46,17 +49,20 @@ pub(crate) struct Pack {
 
 impl Pack {
     pub(crate) fn run(self) -> Result {
-        let is_library = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
+        let is_named = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
         // Without this, `htex lib pack oak.htex birch.htex` would replace the first texture by a
         // library.
-        if !is_library && (self.output.extension().is_some() || self.output.is_dir()) {
+        if !is_named && (self.output.extension().is_some() || self.output.is_dir()) {
             let output = shown(&self.output);
             return Err(Failure::Usage(format!(
                 "{output}: the library to write comes first, such as cloth.{EXTENSION}"
             )));
         }
-        let sources = sources(&self.inputs)?;
-        check_outputs([self.output.as_path()], sources.values().map(PathBuf::as_path))?;
+        let (libraries, files): (Vec<_>, Vec<_>) =
+            located::each(&self.inputs).into_iter().partition(|path| is_library(path));
+        let sources = sources(&files)?;
+        let inputs = libraries.iter().chain(sources.values());
+        check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
         let stem = self.output.file_stem().map(|stem| stem.to_string_lossy());
         let name = self.name.clone().unwrap_or(stem.unwrap_or_default().into_owned());
         let mut writer = Writer::create(&self.output, &name).map_err(for_file(&self.output))?;
@@ -69,9 +75,14 @@ impl Pack {
             writer.add(name, &bytes).map_err(for_file(path))?;
             bar.inc(1);
         }
+        for path in &libraries {
+            let opened = Library::open(path).map_err(for_file(path))?;
+            let added = writer.add_library(opened, |entry| Some(entry.name.clone()));
+            added.map_err(for_file(path))?;
+        }
         let packed = writer.finish().map_err(|error| self.failure(error, &sources))?;
         bar.finish_and_clear();
-        show(&PackReport { file: &self.output, name: &name, packed }, self.json)
+        show(&PackReport { file: &self.output, name, packed }, self.json)
     }
 
     /// Converts an error of the writer. If a licence is missing, says which flags help.
@@ -87,10 +98,11 @@ impl Pack {
 }
 
 /// The report on a library that was written.
-struct PackReport<'a> {
-    file: &'a Path,
-    name: &'a str,
-    packed: PackSummary,
+pub(super) struct PackReport<'a> {
+    pub(super) file: &'a Path,
+    /// Name of the library.
+    pub(super) name: String,
+    pub(super) packed: PackSummary,
 }
 
 impl Serialize for PackReport<'_> {
@@ -130,11 +142,12 @@ impl Display for PackReport<'_> {
 /// Returns the `.htex` files of the inputs, each with its name in the library. An input file keeps
 /// its file name. A file in an input folder gets its path in this folder. Names do not include
 /// `.htex`.
-fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>> {
+pub(super) fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>> {
     let mut found = BTreeMap::new();
     for input in inputs {
         if !input.is_dir() {
-            let name = input.file_name().map(Path::new).unwrap_or(input);
+            let own = located::texture_name(input);
+            let name = own.as_deref().or(input.file_name().map(Path::new)).unwrap_or(input);
             add(&mut found, name, input.clone())?;
             continue;
         }

@@ -30,6 +30,21 @@ pub(crate) struct Unpack {
     force: bool,
 }
 
+/// Number of textures that are asked for together, which bounds the memory for their entries.
+const BATCH: usize = 4096;
+
+/// Why the textures are not read to the end.
+enum Stop {
+    Read(LibraryError),
+    Write(Failure),
+}
+
+impl From<LibraryError> for Stop {
+    fn from(error: LibraryError) -> Self {
+        Self::Read(error)
+    }
+}
+
 impl Unpack {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
@@ -50,19 +65,25 @@ impl Unpack {
             check_alike(&mut names, name)?;
         }
         let mut batch = Batch::default();
-        let mut write = |entry: Entry| {
-            let bytes = library.read(&entry).map_err(for_file(&file))?;
-            bar.inc(1);
-            self.write(&mut batch, &entry.name, &bytes)
+        let at_once = self.library.reads_at_once();
+        let mut write = |entries: &[Entry]| {
+            let written = library.read_many(entries, at_once, |entry, bytes| {
+                bar.inc(1);
+                self.write(&mut batch, &entry.name, &bytes).map_err(Stop::Write)
+            });
+            written.map_err(|stop| match stop {
+                Stop::Read(error) => for_file(&file)(error),
+                Stop::Write(failure) => failure,
+            })
         };
         if self.names.is_empty() {
-            library.entries().try_for_each(|entry| write(entry.map_err(for_file(&file))?))?;
-        }
-        for name in &self.names {
-            let entry = library.entry(name).map_err(for_file(&file))?;
-            let absent =
-                || Failure::from(LibraryError::Absent { name: name.clone() }).in_file(&file);
-            write(entry.ok_or_else(absent)?)?;
+            let mut entries = library.entries().peekable();
+            while entries.peek().is_some() {
+                let some: Result<Vec<Entry>, LibraryError> = entries.by_ref().take(BATCH).collect();
+                write(&some.map_err(for_file(&file))?)?;
+            }
+        } else {
+            write(&library.entries_of(&self.names, at_once).map_err(for_file(&file))?)?;
         }
         // If an error occurred before this line, the files that are not in their final places yet
         // are removed.

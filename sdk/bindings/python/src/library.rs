@@ -1,5 +1,6 @@
 //! Libraries: one file with thousands of textures.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use htex::format::Asset;
@@ -7,12 +8,14 @@ use htex::library::storage::{Location, Storage};
 use htex::library::{
     Entry, Interval, LibraryError, LibraryFile, LibrarySource as Bytes, Query, Writer,
 };
+use htex_author::settings::Metadata;
+use htex_build::{Addition, BuildError, LibraryEdit, LibraryMerge, OnConflict};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-use crate::errors::{IntoPyErr, LibraryError as Raised, of_file, raised};
-use crate::python::data;
+use crate::errors::{IntoPyErr, LibraryError as Raised, of_file, option, raised};
+use crate::python::{data, parsed};
 use crate::texture::{Source, Texture};
 
 /// A library: a single file with thousands of textures. A texture is read only when it is
@@ -54,10 +57,16 @@ impl IntoPyErr for LibraryError {
             Self::Read { ref error, .. } if error.raw_os_error().is_some() => {
                 std::io::Error::new(error.kind(), self.to_string()).into()
             }
-            Self::Absent { name } => PyKeyError::new_err(name),
+            Self::Absent { name, .. } => PyKeyError::new_err(name),
             Self::Asset { error, .. } => error.into_py_err(),
             other => Raised::new_err(other.to_string()),
         }
+    }
+}
+
+impl IntoPyErr for BuildError {
+    fn into_py_err(self) -> PyErr {
+        Raised::new_err(self.to_string())
     }
 }
 
@@ -135,6 +144,104 @@ impl Library {
     fn to_bytes<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.library.get(name)).map_err(raised)?;
         Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Changes a library file: removes, renames and adds textures, and then sets metadata and tags.
+    /// Writes the result to `output`, or replaces the library.
+    #[staticmethod]
+    #[pyo3(signature = (path, output=None, *, remove=Vec::new(), rename=BTreeMap::new(), add=BTreeMap::new(), add_libraries=Vec::new(), metadata=None, add_tags=Vec::new(), remove_tags=Vec::new(), filters=BTreeMap::new(), table=None, unlicensed=false))]
+    fn edit<'py>(
+        py: Python<'py>,
+        path: PathBuf,
+        output: Option<PathBuf>,
+        remove: Vec<String>,
+        rename: BTreeMap<String, String>,
+        add: BTreeMap<String, PathBuf>,
+        add_libraries: Vec<PathBuf>,
+        metadata: Option<Bound<'py, PyDict>>,
+        add_tags: Vec<String>,
+        remove_tags: Vec<String>,
+        filters: BTreeMap<String, String>,
+        table: Option<PathBuf>,
+        unlicensed: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let metadata: Metadata = match metadata {
+            Some(given) => {
+                let json = py.import("json")?.call_method1("dumps", (given,))?;
+                parsed(json.extract()?)?
+            }
+            None => Metadata::default(),
+        };
+        metadata.check().map_err(raised)?;
+        let textures = add.into_iter().map(|(name, file)| Addition::Texture { name, file });
+        let libraries = add_libraries.into_iter().map(Addition::Library);
+        let filters = filters.iter().map(|(field, value)| format!("{field}={value}").parse());
+        let edit = LibraryEdit {
+            remove: remove
+                .iter()
+                .map(|name| name.parse())
+                .collect::<Result<_, _>>()
+                .map_err(option)?,
+            rename: rename.into_iter().collect(),
+            add: textures.chain(libraries).collect(),
+            metadata,
+            add_tags,
+            remove_tags,
+            table,
+            filters: filters.collect::<Result<_, String>>().map_err(option)?,
+            allows_unlicensed: unlicensed,
+        };
+        let to = output.as_deref().unwrap_or(&path);
+        let edited = py.detach(|| edit.run(&path, to, &|_| {})).map_err(raised)?;
+        let fields = PyDict::new(py);
+        for (name, count) in [
+            ("removed", edited.removed),
+            ("renamed", edited.renamed),
+            ("added", edited.added),
+            ("edited", edited.edited),
+        ] {
+            fields.set_item(name, count)?;
+        }
+        fields.set_item("textures", edited.packed.entries)?;
+        fields.set_item("bytes", edited.packed.bytes)?;
+        data(py, "LibraryChange", &fields)
+    }
+
+    /// Merges library files into one. `prefixes` has a text for each library, which is put before
+    /// the names of its textures. Returns the size of the file, bytes.
+    #[staticmethod]
+    #[pyo3(signature = (paths, output, *, prefixes=Vec::new(), on_conflict="error", name=""))]
+    fn merge(
+        py: Python<'_>,
+        paths: Vec<PathBuf>,
+        output: PathBuf,
+        prefixes: Vec<String>,
+        on_conflict: &str,
+        name: &str,
+    ) -> PyResult<u64> {
+        if !prefixes.is_empty() && prefixes.len() != paths.len() {
+            let text = format!(
+                "{} prefixes for {} libraries; give one for each",
+                prefixes.len(),
+                paths.len()
+            );
+            return Err(option(text));
+        }
+        let prefixes = prefixes.into_iter().chain(std::iter::repeat(String::new()));
+        let merge = LibraryMerge {
+            libraries: paths.into_iter().zip(prefixes).collect(),
+            on_conflict: match on_conflict {
+                "error" => OnConflict::Error,
+                "first" => OnConflict::First,
+                "last" => OnConflict::Last,
+                other => {
+                    return Err(option(format!(
+                        "on_conflict: {other:?} is none of error, first and last"
+                    )));
+                }
+            },
+        };
+        Ok(py.detach(|| merge.run(&output, name)).map_err(raised)?.bytes)
     }
 
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Texture> {

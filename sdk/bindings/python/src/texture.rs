@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use htex::format::{Asset, write_file};
+use htex::library::storage::{Location, Storage};
+use htex::library::{Library, split_address};
 use htex::play::{Effects, Parameter, Synthesis};
 use htex::{Motion, Representation, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
@@ -25,7 +27,8 @@ pub(crate) struct Texture {
     installed: bool,
 }
 
-/// Opens a texture from a path, bytes, or an object with the method `read`.
+/// Opens a texture from a path, bytes, or an object with the method `read`. A texture of a library
+/// is `cloth.htexlib#woven/cotton`, with a path or a URI of the library.
 #[pyfunction]
 #[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
 pub(crate) fn open(
@@ -38,11 +41,22 @@ pub(crate) fn open(
     let opened = Source::from_python(source)?;
     py.detach(|| {
         let data = match &opened {
-            Source::File(path) => Asset::open(path),
+            Source::File(path) => match path.to_str().and_then(split_address) {
+                Some((library, name)) => Asset::from_bytes(&in_library(library, name)?),
+                None => Asset::open(path),
+            },
             Source::Bytes(bytes) => Asset::from_bytes(bytes),
         };
         Texture::new(data.map_err(raised)?, plugins, embedded, installed)
     })
+}
+
+/// Reads a texture of a library.
+fn in_library(library: &str, name: &str) -> PyResult<Vec<u8>> {
+    let location = Location::parse(library.as_ref()).map_err(raised)?;
+    let storage = Storage::from_environment().map_err(raised)?;
+    let library = Library::open_located(&storage, &location).map_err(raised)?;
+    library.get(name).map_err(raised)
 }
 
 /// A file, or the bytes of a file.

@@ -266,5 +266,7 @@ def test_a_texture_of_a_library_is_read_by_uri(
     library = htex.Library(f"{url}/local/surfaces.htexlib")
     assert library.to_bytes("vinyl-0") == local["textures/vinyl-0.htex"]
     assert len(seen) <= 3 and all("bytes=" in line for line in seen), seen
+    opened = htex.open(f"{url}/local/surfaces.htexlib#vinyl-0")
+    assert opened.to_bytes() == local["textures/vinyl-0.htex"]
     with pytest.raises(htex.LibraryError, match="missing"):
         htex.Library(f"{url}/missing.htexlib")

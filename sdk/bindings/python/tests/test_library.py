@@ -38,6 +38,46 @@ def test_a_texture_plays_as_its_file(library: htex.Library, texture: htex.Textur
             absent("velvet")
 
 
+def test_a_texture_is_opened_by_the_path_of_its_library_and_its_name(place: pathlib.Path, library: htex.Library) -> None:
+    assert htex.open(place / "three.htexlib#woven/a").to_bytes() == library.to_bytes("woven/a")
+    with pytest.raises(KeyError, match="woven/c"):
+        htex.open(f"{place}/three.htexlib#woven/c")
+    with pytest.raises(FileNotFoundError):
+        htex.open(place / "none.htexlib#woven/a")
+
+
+def test_a_library_is_changed_without_its_recordings(place: pathlib.Path, library: htex.Library) -> None:
+    new, cloth = place / "changed.htexlib", place / "cloth.htex"
+    said = htex.Library.edit(
+        place / "three.htexlib",
+        new,
+        remove=["woven/*"],
+        rename={"Felt": "felt"},
+        add={"cloth": cloth},
+        metadata={"license": "CC0-1.0", "description": "Changed"},
+        add_tags=["tested"],
+        filters={"name": "f*"},
+    )
+    # What does not match is neither removed nor edited.
+    assert (said.removed, said.renamed, said.added, said.edited, said.textures) == (0, 1, 1, 0, 4)
+    said = htex.Library.edit(new, remove=["woven/*"], metadata={"description": "Changed"}, add_tags=["tested"])
+    assert (said.removed, said.edited, said.textures, said.bytes) == (2, 2, 2, new.stat().st_size)
+    changed = htex.Library(new)
+    assert changed.names == ["cloth", "felt"]
+    assert changed["felt"].manifest["description"] == "Changed" and "tested" in changed.entry("felt").tags
+    with pytest.raises(htex.LibraryError, match="most similar names are felt"):
+        htex.Library.edit(new, remove=["fellt"])
+    with pytest.raises(htex.OptionError, match="colour"):
+        htex.Library.edit(new, metadata={"colour": "red"})
+
+    both = place / "both.htexlib"
+    assert htex.Library.merge([new, place / "three.htexlib"], both, prefixes=["a/", ""]) == both.stat().st_size
+    assert htex.Library(both).names == ["Felt", "a/cloth", "a/felt", "woven/a", "woven/b"]
+    with pytest.raises(htex.LibraryError, match="differ only in case"):
+        htex.Library.merge([new, place / "three.htexlib"], both)
+    assert len(htex.Library(both)) == 5
+
+
 def test_entries_are_those_of_the_command(library: htex.Library, place: pathlib.Path) -> None:
     listed = json.loads(command("lib", "ls", "three.htexlib", "--json", cwd=place).stdout)
     assert len(listed) == 3

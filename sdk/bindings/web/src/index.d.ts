@@ -307,7 +307,10 @@ export class Voice {
   [Symbol.dispose](): void;
 }
 
-/** Opens a texture from its bytes, a File, a Blob, a Response, or its address. */
+/**
+ * Opens a texture from its bytes, a File, a Blob, a Response, or its address. The address
+ * `cloth.htexlib#woven/cotton` is the texture `woven/cotton` of a library.
+ */
 export function open(source: Bytes | Readable | Address, options?: OpenOptions): Promise<Texture>;
 
 /** A range of values: minimum and maximum. */

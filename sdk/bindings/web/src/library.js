@@ -2,6 +2,7 @@
 
 import { Core, HtexError, toBytes } from "./core.js";
 import { host } from "./host.js";
+import { Library } from "./htexlib.js";
 import { OPEN, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
@@ -131,7 +132,7 @@ export async function open(source, options = {}) {
 
 /** Copies the bytes that a caller passes in, in any of the forms that `open` accepts. */
 export async function bytesOf(source, call) {
-  if (isAddress(source)) return new Uint8Array(await (await download(addressOf(source, call), "the texture")).arrayBuffer());
+  if (isAddress(source)) return bytesAt(addressOf(source, call));
   if (isBytes(source)) return toBytes(source).slice();
   if (typeof Response !== "undefined" && source instanceof Response) {
     return new Uint8Array(await received(source, `${call}: ${source.url || "the response"}`).arrayBuffer());
@@ -141,6 +142,19 @@ export async function bytesOf(source, call) {
   const awaited = source instanceof Promise ? "; `await` it first" : "";
   const text = `${call} takes an ArrayBuffer, a typed array, a File, a Blob, a Response or an address, not ${given}${awaited}`;
   throw new HtexError(text, "invalid-argument");
+}
+
+/** Downloads a texture's file. `cloth.htexlib#woven/cotton` is a texture of a library, of which only the needed ranges are fetched. */
+async function bytesAt(url) {
+  if (!url.hash || !/\.htexlib$/i.test(url.pathname)) {
+    return new Uint8Array(await (await download(url, "the texture")).arrayBuffer());
+  }
+  const opened = await Library.open(new URL(url.href.slice(0, -url.hash.length)));
+  try {
+    return await opened.bytes(decodeURIComponent(url.hash.slice(1)));
+  } finally {
+    opened.free();
+  }
 }
 
 export function isBlob(source) {

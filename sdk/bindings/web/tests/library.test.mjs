@@ -62,6 +62,15 @@ test("opening a library and a texture takes three requests, and a texture of a k
   await server.end();
 });
 
+test("a texture is opened by the address of its library and its name", async () => {
+  const server = await serve(await bytes("many.htexlib"));
+  const texture = await open(`${server.url}#vinyl`);
+  assert.deepEqual(texture.bytes, new Uint8Array(await bytes("vinyl.htex")));
+  assert.equal(server.requests.length, 3);
+  await assert.rejects(open(`${server.url}#velvet`), { name: "HtexError", message: /velvet/ });
+  await server.end();
+});
+
 test("a texture whose module others share is whole", async () => {
   const library = await Library.open(await bytes("many.htexlib"));
   const [first, second] = await Promise.all(["bursts", "bursts again"].map((name) => library.bytes(name)));

@@ -17,6 +17,27 @@ pub mod schema;
 #[cfg(feature = "storage")]
 pub mod storage;
 
+/// Jaro–Winkler similarity above which an unknown word counts as a misspelt known word.
+const SIMILAR: f64 = 0.8;
+
+/// Returns the known words that are most similar to a word that is not known, the most similar
+/// first. Returns at most `most` words, and only words that are similar enough to be meant.
+///
+/// ```
+/// assert_eq!(htex_base::similar("licence", ["license", "level"], 1), ["license"]);
+/// assert!(htex_base::similar("colour", ["license", "level"], 1).is_empty());
+/// ```
+pub fn similar<'a>(
+    word: &str,
+    known: impl IntoIterator<Item = &'a str>,
+    most: usize,
+) -> Vec<&'a str> {
+    let alike = known.into_iter().map(|known| (strsim::jaro_winkler(known, word), known));
+    let mut alike: Vec<_> = alike.filter(|(similarity, _)| *similarity > SIMILAR).collect();
+    alike.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    alike.into_iter().take(most).map(|(_, known)| known).collect()
+}
+
 /// Defines methods inside an `impl` of an options type. Each method sets a field and returns the
 /// options.
 ///

@@ -30,14 +30,28 @@ impl Asset {
         asset.ok_or(ReadError::Invalid { findings })
     }
 
-    /// Reads an asset from a file, within the default [`Limits`].
+    /// Reads an asset from a file, within the default [`Limits`]. With the feature `library`,
+    /// `cloth.htexlib#woven/cotton` is the texture `woven/cotton` of the library `cloth.htexlib`.
     ///
     /// # Errors
-    /// Returns [`ReadError::Io`] if the file cannot be read, and the errors of
-    /// [`Self::from_bytes`].
+    /// Returns [`ReadError::Io`] if the file cannot be read or the library has no such texture, and
+    /// the errors of [`Self::from_bytes`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let limits = Limits::default();
+        #[cfg(feature = "library")]
+        if let Some((library, name)) = in_library(path) {
+            let bytes = crate::library::Library::open(library)
+                .and_then(|library| library.get(name))
+                .map_err(|error| ReadError::Io { path: path.to_owned(), error: error.into() })?;
+            return Self::from_bytes_with(&bytes, &limits);
+        }
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
+    }
+
+    /// Returns the file that [`Self::open`] reads: the path itself, or the library of
+    /// `cloth.htexlib#oak`.
+    pub fn file_of(path: &Path) -> &Path {
+        in_library(path).map_or(path, |(library, _)| library)
     }
 
     /// Returns the size of a representation's parameter block as stored, bytes. Returns 0 if there
@@ -48,6 +62,17 @@ impl Asset {
         let bytes = block.and_then(|(stored, flats)| block::encode(&stored.fields, flats).ok());
         bytes.map_or(0, |bytes| bytes.len())
     }
+}
+
+/// Splits the path of a texture in a library. Programs for the web read no files.
+fn in_library(path: &Path) -> Option<(&Path, &str)> {
+    #[cfg(all(feature = "library", not(target_family = "wasm")))]
+    return path
+        .to_str()
+        .and_then(crate::library::split_address)
+        .map(|(library, name)| (library.as_ref(), name));
+    #[cfg(not(all(feature = "library", not(target_family = "wasm"))))]
+    return None;
 }
 
 /// Reads a file, but at most one byte more than the limit.

@@ -74,6 +74,7 @@ pub mod settings;
 pub mod simulate;
 mod spectrum;
 mod take;
+mod texture_difference;
 pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
@@ -100,3 +101,4 @@ pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };
 pub use take::{SegmentedTake, Take, segment_take, validate_recording, validate_recording_bytes};
+pub use texture_difference::{DifferenceAt, EntryChange, ModelDifference, TextureDifference};

@@ -49,7 +49,8 @@ pub struct SceneFile {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Surface {
-    /// Path of the asset. Relative paths start at the scene's folder.
+    /// Path of the asset, or of a library with the name of one of its textures
+    /// (`cloth.htexlib#woven/cotton`). Relative paths start at the scene's folder.
     pub asset: PathBuf,
     /// Region of the surface. Default: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]

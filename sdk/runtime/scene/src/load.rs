@@ -228,7 +228,8 @@ impl Scene {
             _ => None,
         };
         let all = assets.chain(trace).chain(&self.file.device.response);
-        all.map(|path| self.folder.join(path)).collect()
+        let file = |path: PathBuf| htex_format::Asset::file_of(&path).to_owned();
+        all.map(|path| file(self.folder.join(path))).collect()
     }
 
     /// Returns the physical quantity of the textures. All textures of a scene have the same
@@ -360,7 +361,7 @@ fn open_asset(
     let data = match place {
         Place::Folder(folder) => {
             let path = folder.join(asset);
-            if !may_be_read(&path) {
+            if !may_be_read(htex_format::Asset::file_of(&path)) {
                 return Err((rule::ASSET_INVALID, no_file(asset)));
             }
             htex_format::Asset::open(&path)

@@ -51,7 +51,7 @@ impl State {
 
 fn absent(name: &str) -> Failure {
     let name = name.to_owned();
-    LibraryError::Absent { name }.into()
+    LibraryError::Absent { name, nearest: Vec::new() }.into()
 }
 
 /// Starts opening a library.

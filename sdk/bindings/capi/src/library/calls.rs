@@ -174,8 +174,7 @@ pub(super) unsafe fn entry_json(
         let library = LIBRARIES.shared(library.id)?;
         // SAFETY: the pointers are the caller's.
         let name = unsafe { needed_text(name) }?;
-        let entry =
-            library.entry(name)?.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
+        let entry = library.needed(name)?;
         // SAFETY: as above.
         unsafe { write_text(&json(&entry)?, out, capacity, length) }
     })

@@ -57,6 +57,24 @@ class LibraryEntry:
     """BLAKE3 hash of the texture's file, hexadecimal."""
 
 
+@dataclass(frozen=True)
+class LibraryChange:
+    """What ``Library.edit`` changed, and the library that it wrote."""
+
+    removed: int
+    """Number of textures that were removed."""
+    renamed: int
+    """Number of textures that have another name."""
+    added: int
+    """Number of textures that were added."""
+    edited: int
+    """Number of textures with other metadata."""
+    textures: int
+    """Number of textures in the library."""
+    bytes: int
+    """Size of the library's file, bytes."""
+
+
 @dataclass(frozen=True, eq=False)
 class Spectrum:
     """A texture spectrum. A sinusoid of amplitude A, at one of the frequencies, has magnitude A."""

@@ -1,12 +1,12 @@
 import os
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol, final
+from typing import Any, Literal, Protocol, final
 
 import numpy as np
 import numpy.typing as npt
 
-from ._data import Condition, Coverage, DeviceStatus, Envelope, Exponent, LibraryEntry, Quantity, Spectrum
+from ._data import Condition, Coverage, DeviceStatus, Envelope, Exponent, LibraryChange, LibraryEntry, Quantity, Spectrum
 
 __version__: str
 __all__ = [
@@ -137,6 +137,31 @@ class Library:
     ) -> list[LibraryEntry]: ...
     def entry(self, name: str) -> LibraryEntry: ...
     def to_bytes(self, name: str) -> bytes: ...
+    @staticmethod
+    def edit(
+        path: _Path,
+        output: _Path | None = None,
+        *,
+        remove: Sequence[str] = ...,
+        rename: Mapping[str, str] = ...,
+        add: Mapping[str, _Path] = ...,
+        add_libraries: Sequence[_Path] = ...,
+        metadata: Mapping[str, object] | None = None,
+        add_tags: Sequence[str] = ...,
+        remove_tags: Sequence[str] = ...,
+        filters: Mapping[str, str] = ...,
+        table: _Path | None = None,
+        unlicensed: bool = False,
+    ) -> LibraryChange: ...
+    @staticmethod
+    def merge(
+        paths: Sequence[_Path],
+        output: _Path,
+        *,
+        prefixes: Sequence[str] = ...,
+        on_conflict: Literal["error", "first", "last"] = "error",
+        name: str = "",
+    ) -> int: ...
     def __getitem__(self, name: str, /) -> Texture: ...
     def __contains__(self, name: str, /) -> bool: ...
     def __len__(self) -> int: ...

@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
-/// Jaro–Winkler similarity above which an unknown key counts as a misspelt known key.
-const SIMILAR: f64 = 0.8;
-
 /// A key of a document that the schema does not contain.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
@@ -109,13 +106,10 @@ impl<'a> Walk<'a> {
 
     fn refuse(&mut self, schema: &Value, key: &str) {
         let known = schema["properties"].as_object().into_iter().flatten();
-        let alike = known.map(|(known, _)| (strsim::jaro_winkler(known, key), known));
-        let nearest = alike
-            .filter(|(similarity, _)| *similarity > SIMILAR)
-            .max_by(|(a, _), (b, _)| a.total_cmp(b));
+        let nearest = crate::similar(key, known.map(|(known, _)| known.as_str()), 1);
         self.unknown.push(UnknownKey {
             path: self.path.iter().cloned().chain([key.to_owned()]).collect(),
-            nearest: nearest.map(|(_, known)| known.clone()),
+            nearest: nearest.first().map(|known| (*known).to_owned()),
         });
     }
 

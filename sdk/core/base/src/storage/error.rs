@@ -59,8 +59,10 @@ pub enum StorageProblem {
         /// The size of the file.
         len: u64,
     },
-    /// The server cannot send parts of files.
-    #[error("the server sends whole files only; download it and name the copy")]
+    /// The server cannot send parts of files. Files of up to 1 MiB are read as a whole.
+    #[error(
+        "the server sends whole files only, and it has more than 1 MiB; download it and name the copy"
+    )]
     NoRanges,
     /// The file is on a web server, so it cannot be written.
     #[error("files by HTTP are only read; write to s3://, gs://, az:// or a local file")]

@@ -20,6 +20,12 @@ pub(crate) struct Version {
     pub(crate) etag: Option<String>,
 }
 
+impl Version {
+    pub(crate) fn unknown(bytes: u64) -> Self {
+        Self { bytes, etag: None }
+    }
+}
+
 pub(crate) struct ReadPart {
     pub(crate) bytes: Vec<u8>,
     pub(crate) version: Version,

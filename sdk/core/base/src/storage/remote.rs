@@ -46,6 +46,9 @@ pub struct Remote {
     head_start: u64,
 }
 
+/// Largest file that is read as a whole if the server sends no ranges, bytes.
+const MOST_WHOLE_BYTES: u64 = 1 << 20;
+
 enum Content {
     File { file: Mutex<File>, requests: AtomicU64, bytes: AtomicU64 },
     Store { store: Box<Store>, version: Version },
@@ -58,7 +61,12 @@ impl Remote {
         head: Range<u64>,
     ) -> Result<Self, StorageError> {
         let head_start = head.start;
-        let part = store.part(head, None)?;
+        let part = match store.part(head, None) {
+            Err(error) if matches!(error.problem, StorageProblem::NoRanges) && head_start == 0 => {
+                return Self::of_whole(location, store, error);
+            }
+            part => part?,
+        };
         Ok(Self {
             location: location.clone(),
             len: part.version.bytes,
@@ -66,6 +74,29 @@ impl Remote {
             head: part.bytes,
             head_start,
             of: Content::Store { store: Box::new(store), version: part.version },
+        })
+    }
+
+    /// Reads a small file as a whole, from a server that sends no ranges.
+    fn of_whole(
+        location: &Location,
+        store: Store,
+        no_ranges: StorageError,
+    ) -> Result<Self, StorageError> {
+        let head = match store.read(MOST_WHOLE_BYTES) {
+            Err(error) if matches!(error.problem, StorageProblem::TooLarge { .. }) => {
+                return Err(no_ranges);
+            }
+            whole => whole?,
+        };
+        let len = head.len() as u64;
+        Ok(Self {
+            location: location.clone(),
+            of: Content::Store { store: Box::new(store), version: Version::unknown(len) },
+            len,
+            etag: None,
+            head,
+            head_start: 0,
         })
     }
 

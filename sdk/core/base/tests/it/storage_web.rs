@@ -20,7 +20,13 @@ fn a_file_is_read_without_credentials() {
     assert_eq!(storage(&server).read_range(&uri, 7..9).unwrap(), bytes[7..9]);
     assert_eq!(storage(&server).size(&uri).unwrap(), 200_000);
     server.fail(|_, _| Fault::Whole);
-    assert!(said(storage(&server).open(&uri, 16)).contains("whole files only"));
+    let whole = storage(&server).open(&uri, 16).unwrap();
+    let mut part = [0; 2];
+    whole.read_at(150_000, &mut part).unwrap();
+    assert_eq!((whole.len(), &part[..]), (200_000, &bytes[150_000..150_002]));
+    server.put("web/large.csv", &vec![0; (1 << 20) + 1]);
+    let large = at(&format!("{}/web/large.csv", server.url()));
+    assert!(said(storage(&server).open(&large, 16)).contains("whole files only"));
     server.fail(|_, _| Fault::None);
     let none = at(&format!("{}/web/none.csv", server.url()));
     assert!(!storage(&server).exists(&none).unwrap());

@@ -41,8 +41,12 @@ pub enum LibraryError {
         findings: Vec<Finding>,
     },
     /// The library has no texture with this name.
-    #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
-    Absent { name: String },
+    #[error("there is no texture {} in the library; {}", plain(.name), advice(.nearest))]
+    Absent {
+        name: String,
+        /// The most similar names in the library; empty if no name is similar.
+        nearest: Vec<String>,
+    },
     /// The library could not be written. If the file existed before, it is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Write {
@@ -95,6 +99,26 @@ pub enum LibraryError {
         /// The limit, and what to do.
         problem: String,
     },
+}
+
+/// Keeps the kind of an error of the operating system.
+impl From<LibraryError> for io::Error {
+    fn from(error: LibraryError) -> Self {
+        let kind = match &error {
+            LibraryError::Open { error, .. } | LibraryError::Read { error, .. } => error.kind(),
+            _ => io::ErrorKind::Other,
+        };
+        Self::new(kind, error)
+    }
+}
+
+/// Returns what to do if a name is absent.
+fn advice(nearest: &[String]) -> String {
+    if nearest.is_empty() {
+        return "list its entries to see their names".to_owned();
+    }
+    let nearest: Vec<_> = nearest.iter().map(|name| plain(name)).collect();
+    format!("its most similar names are {}", nearest.join(", "))
 }
 
 /// Returns the words that continue the message: the number of other textures, with the matching

@@ -40,6 +40,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
+mod address;
 #[cfg(feature = "write")]
 mod encode;
 mod entry;
@@ -52,11 +53,17 @@ mod leaf;
 mod limits;
 #[cfg(feature = "storage")]
 mod located;
+#[cfg(not(target_family = "wasm"))]
+mod many;
 mod name;
+#[cfg(feature = "storage")]
+mod name_pattern;
 mod opening;
 #[cfg(feature = "write")]
 mod packer;
 mod page;
+#[cfg(feature = "write")]
+mod pieces;
 mod query;
 mod ratio;
 mod reader;
@@ -72,6 +79,7 @@ mod wire;
 #[cfg(feature = "write")]
 mod writer;
 
+pub use address::split_address;
 pub use entry::{Conditions, Entry, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};
@@ -80,6 +88,8 @@ pub use limits::Limits;
 #[cfg(feature = "storage")]
 pub use located::LibraryFile;
 pub use name::{InvalidName, Names, check_name};
+#[cfg(feature = "storage")]
+pub use name_pattern::NamePattern;
 pub use opening::{FIRST_READ, Opening, Progress};
 #[cfg(feature = "write")]
 pub use packer::PackSummary;

@@ -1,11 +1,12 @@
 //! Packs textures into a library.
 //!
-//! Only after the last texture does the packer know which modules are shared. So the packer first
+//! Only after the last texture does the packer know which objects are shared. So the packer first
 //! writes each added texture to a temporary store, the spool, and writes the library at the end.
+//! Textures of another library need no spool, because they can be read from that library.
 //! The packer orders textures by name, and shared objects by hash. So the same textures always give
-//! the same file, in whatever order they were added.
+//! the same file, in whatever order and from whatever libraries they were added.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,11 +18,14 @@ use crate::library::entry::{Conditions, Entry};
 use crate::library::error::LibraryError;
 use crate::library::facts::{Facts, MOST_WORDS};
 use crate::library::header::{HEADER_BYTES, Header, MINOR};
-use crate::library::leaf::length;
+use crate::library::leaf::{MOST_CUTS, length};
 use crate::library::limits::Limits;
 use crate::library::name::{check_library_name, check_name, file_key};
+use crate::library::pieces::{Objects, Piece, Pieces, Source, modules};
+use crate::library::reader::Library;
 use crate::library::sharing::Sharing;
-use crate::library::spool::{Spool, SpoolRange, SpoolReader, Store};
+use crate::library::source::LibrarySource;
+use crate::library::spool::{Spool, Store};
 use crate::library::wire::TEXT_BYTES;
 
 /// The textures of a library that is being written.
@@ -30,8 +34,15 @@ pub(crate) struct Packer<S> {
     path: PathBuf,
     name: String,
     spool: Spool<S>,
-    /// The textures by name, in the order in which the index and the payload contain them.
-    added: BTreeMap<String, PendingTexture>,
+    /// Other libraries, of which textures are packed again. Stores from 1.
+    libraries: Vec<Box<dyn Source + Send>>,
+    objects: Objects,
+    /// Textures with different bytes.
+    textures: Vec<PendingTexture>,
+    /// Indices of the textures by hash.
+    by_hash: HashMap<[u8; 32], u32>,
+    /// Index of the texture of each name. The index and the payload have this order.
+    added: BTreeMap<String, u32>,
     /// The name of each texture by its [`file_key`], to find names that denote the same file on
     /// some systems.
     files: BTreeMap<[u8; 16], String>,
@@ -40,6 +51,8 @@ pub(crate) struct Packer<S> {
     words: BTreeSet<Arc<Words>>,
     /// Whether textures without a licence may be packed.
     pub(crate) allows_unlicensed: bool,
+    /// Whether an added texture embeds a module that no packed library shares.
+    has_new_modules: bool,
 }
 
 /// Tags and models of a texture.
@@ -56,8 +69,9 @@ struct PendingTexture {
     contact: Contact,
     law: Law,
     is_licensed: bool,
+    bytes: u64,
     blake3: [u8; 32],
-    spooled: SpoolRange,
+    pieces: Pieces,
 }
 
 /// Sizes, counts and hash of a library that was written.
@@ -87,23 +101,27 @@ impl<S: Store> Packer<S> {
             path: path.to_owned(),
             name: name.to_owned(),
             spool: Spool::new(store),
+            libraries: Vec::new(),
+            objects: Objects::default(),
+            textures: Vec::new(),
+            by_hash: HashMap::new(),
             added: BTreeMap::new(),
             files: BTreeMap::new(),
             words: BTreeSet::new(),
             allows_unlicensed: false,
+            has_new_modules: false,
         })
     }
 
     /// Adds a texture; see [`crate::library::Writer::add`].
     pub(crate) fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
-        check_name(name)
-            .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
-        if self.added.contains_key(name) {
-            return Err(LibraryError::Duplicate { name: name.to_owned() });
-        }
-        let file = file_key(name);
-        if let Some(other) = self.files.get(&file) {
-            return Err(LibraryError::Alike { name: name.to_owned(), other: other.clone() });
+        self.check(name)?;
+        let blake3 = *blake3::hash(asset).as_bytes();
+        if let Some(known) = self.by_hash.get(&blake3) {
+            let known = *known;
+            self.use_again(known, || Ok(asset.to_vec()))?;
+            self.keep(name, known);
+            return Ok(());
         }
         let read = Asset::from_bytes(asset).map_err(|error| LibraryError::Asset {
             name: name.to_owned(),
@@ -112,19 +130,207 @@ impl<S: Store> Packer<S> {
         let facts = Facts::new(&read.manifest);
         check_words(name, "tags", &facts.tags)?;
         check_words(name, "models", &facts.models)?;
-        let spooled = self.spool.add(asset).map_err(LibraryError::unchanged(&self.path))?;
+        let pieces = self.spooled(asset).map_err(LibraryError::unchanged(&self.path))?;
+        self.has_new_modules |= !pieces.objects.is_empty();
         let added = PendingTexture {
             words: self.common_words(facts.tags, facts.models),
             conditions: facts.conditions,
             contact: facts.contact,
             law: facts.law,
             is_licensed: read.manifest.license.is_some(),
-            blake3: *blake3::hash(asset).as_bytes(),
-            spooled,
+            bytes: asset.len() as u64,
+            blake3,
+            pieces,
         };
-        self.added.insert(name.to_owned(), added);
-        self.files.insert(file, name.to_owned());
+        self.insert(name, added);
         Ok(())
+    }
+
+    /// Adds the textures of a library; see [`crate::library::Writer::add_library`].
+    pub(crate) fn add_library<L: LibrarySource + Send + 'static>(
+        &mut self,
+        library: Library<L>,
+        mut name: impl FnMut(&Entry) -> Option<String>,
+    ) -> Result<(), LibraryError> {
+        let store = self.libraries.len() as u32 + 1;
+        let payload = library.index().header().payload.start;
+        let mut known_objects = HashMap::new();
+        for entry in library.entries() {
+            let entry = entry?;
+            let Some(name) = name(&entry) else { continue };
+            self.check(&name)?;
+            if let Some(known) = self.by_hash.get(&entry.blake3) {
+                let known = *known;
+                self.use_again(known, || library.read(&entry))?;
+                self.keep(&name, known);
+                continue;
+            }
+            let shared = library.index().asset_ranges(&entry).into_iter().skip(1);
+            let mut objects = Vec::with_capacity(entry.place.cuts.len());
+            for (cut, range) in entry.place.cuts.iter().zip(shared) {
+                let object = match known_objects.get(&range) {
+                    Some(object) => {
+                        self.objects.all[*object as usize].uses += 1;
+                        *object
+                    }
+                    None => {
+                        let bytes = library.read_range(range.clone())?;
+                        let piece = || Ok::<_, LibraryError>(Piece { store, range: range.clone() });
+                        let object = self.objects.add(&bytes, piece)?;
+                        // From a library, it can be read before the spool is complete.
+                        self.objects.all[object as usize].piece = piece()?;
+                        known_objects.insert(range, object);
+                        object
+                    }
+                };
+                objects.push((cut.at as u32, object));
+            }
+            let own = payload + entry.place.own.start..payload + entry.place.own.end;
+            let pieces = Pieces { own: Piece { store, range: own }, objects: objects.into() };
+            let added = PendingTexture {
+                words: self.common_words(entry.tags, entry.models),
+                conditions: entry.conditions,
+                contact: entry.contact,
+                law: entry.law,
+                // Checked when the library was packed.
+                is_licensed: true,
+                bytes: entry.bytes,
+                blake3: entry.blake3,
+                pieces,
+            };
+            self.insert(&name, added);
+        }
+        self.libraries.push(Box::new(library));
+        Ok(())
+    }
+
+    /// Checks the name of a texture that is to be added.
+    fn check(&self, name: &str) -> Result<(), LibraryError> {
+        check_name(name)
+            .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
+        if self.added.contains_key(name) {
+            return Err(LibraryError::Duplicate { name: name.to_owned() });
+        }
+        match self.files.get(&file_key(name)) {
+            Some(other) => Err(LibraryError::Alike { name: name.to_owned(), other: other.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    fn insert(&mut self, name: &str, texture: PendingTexture) {
+        let index = self.textures.len() as u32;
+        self.by_hash.insert(texture.blake3, index);
+        self.textures.push(texture);
+        self.keep(name, index);
+    }
+
+    fn keep(&mut self, name: &str, texture: u32) {
+        self.added.insert(name.to_owned(), texture);
+        self.files.insert(file_key(name), name.to_owned());
+    }
+
+    /// Writes a texture to the spool. Its modules become objects.
+    fn spooled(&mut self, asset: &[u8]) -> io::Result<Pieces> {
+        let Self { spool, objects, .. } = self;
+        // All modules are written first, so that the texture's own bytes are adjacent in the spool.
+        let ranges = modules(asset);
+        let found: Vec<u32> = ranges
+            .iter()
+            .map(|range| objects.add(&asset[range.clone()], || spool.add(&asset[range.clone()])))
+            .collect::<io::Result<_>>()?;
+        let start = spool.end();
+        let (mut at, mut cuts) = (0, Vec::with_capacity(ranges.len()));
+        for (range, object) in ranges.iter().zip(found) {
+            spool.add(&asset[at..range.start])?;
+            // A valid asset has at most 16 MiB, so 32 bits are enough. They keep the memory for
+            // each texture small.
+            cuts.push(((spool.end() - start) as u32, object));
+            at = range.end;
+        }
+        spool.add(&asset[at..])?;
+        let own = Piece { store: 0, range: start..spool.end() };
+        Ok(Pieces { own, objects: cuts.into() })
+    }
+
+    /// Counts one more use of a texture. From the second use on, all its bytes are objects: its
+    /// modules, and what is between them.
+    fn use_again(
+        &mut self,
+        texture: u32,
+        bytes: impl FnOnce() -> Result<Vec<u8>, LibraryError>,
+    ) -> Result<(), LibraryError> {
+        let pieces = self.textures[texture as usize].pieces.clone();
+        if pieces.own.range.is_empty() {
+            self.objects.count(&pieces, true);
+            return Ok(());
+        }
+        let asset = bytes()?;
+        let modules = modules(&asset);
+        let ends = modules.iter().flat_map(|range| [range.start, range.end]);
+        let ends: Vec<usize> = ends.chain([asset.len()]).collect();
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let parts: Vec<_> = starts
+            .zip(&ends)
+            .map(|(start, end)| &asset[start..*end])
+            .filter(|part| !matches!(part, []))
+            .collect();
+        if parts.len() > MOST_CUTS {
+            self.objects.count(&pieces, true);
+            return Ok(());
+        }
+        self.objects.count(&pieces, false);
+        let Self { spool, objects, path, .. } = self;
+        let parts: Result<Vec<_>, _> =
+            parts.into_iter().map(|part| Ok((0, objects.add(part, || spool.add(part))?))).collect();
+        let objects = parts.map_err(LibraryError::unchanged(path))?.into();
+        let own = Piece { store: 0, range: 0..0 };
+        let pieces = Pieces { own, objects };
+        self.objects.count(&pieces, true);
+        self.textures[texture as usize].pieces = pieces;
+        Ok(())
+    }
+
+    /// Finds the modules that textures of packed libraries have among their own bytes, because no
+    /// other texture of their library has them. Now another texture may.
+    fn find_modules(&mut self) -> Result<(), LibraryError> {
+        if self.libraries.is_empty() || self.libraries.len() == 1 && !self.has_new_modules {
+            return Ok(());
+        }
+        for i in 0..self.textures.len() {
+            let pieces = self.textures[i].pieces.clone();
+            if pieces.own.store == 0 {
+                continue;
+            }
+            let asset = self.read(&pieces).map_err(LibraryError::unchanged(&self.path))?;
+            if modules(&asset).len() > pieces.objects.len() {
+                self.objects.count(&pieces, false);
+                let pieces = self.spooled(&asset).map_err(LibraryError::unchanged(&self.path))?;
+                self.textures[i].pieces = pieces;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a texture of a packed library.
+    fn read(&mut self, pieces: &Pieces) -> io::Result<Vec<u8>> {
+        let (mut asset, mut at) = (Vec::new(), pieces.own.range.start);
+        let mut copy = |piece: &Piece, asset: &mut Vec<u8>| {
+            let library =
+                piece.store.checked_sub(1).and_then(|i| self.libraries.get_mut(i as usize));
+            match library {
+                Some(library) => library.copy(piece.range.clone(), asset),
+                None => Err(io::Error::other("an object is in another store")),
+            }
+        };
+        let store = pieces.own.store;
+        for (before, object) in &pieces.objects {
+            let next = pieces.own.range.start + u64::from(*before);
+            copy(&Piece { store, range: at..next }, &mut asset)?;
+            copy(&self.objects.all[*object as usize].piece, &mut asset)?;
+            at = next;
+        }
+        copy(&Piece { store, range: at..pieces.own.range.end }, &mut asset)?;
+        Ok(asset)
     }
 
     /// Returns these tags and models in one allocation. All textures with the same tags and models
@@ -141,7 +347,8 @@ impl<S: Store> Packer<S> {
     /// Refuses textures without a licence, because only the people who made such a texture may pass
     /// it on.
     fn check_licences(&self) -> Result<(), LibraryError> {
-        let mut unlicensed = self.added.iter().filter(|(_, texture)| !texture.is_licensed);
+        let is_licensed = |texture: u32| self.textures[texture as usize].is_licensed;
+        let mut unlicensed = self.added.iter().filter(|(_, texture)| !is_licensed(**texture));
         match unlicensed.next() {
             Some((name, _)) if !self.allows_unlicensed => {
                 Err(LibraryError::Unlicensed { name: name.clone(), others: unlicensed.count() })
@@ -151,22 +358,29 @@ impl<S: Store> Packer<S> {
     }
 
     /// Writes the library to `target`.
-    pub(crate) fn finish(self, target: &mut impl Write) -> Result<PackSummary, LibraryError> {
+    pub(crate) fn finish(mut self, target: &mut impl Write) -> Result<PackSummary, LibraryError> {
         // Only here, when all textures are known, so that the message can say how many have no
         // licence.
         self.check_licences()?;
-        let Self { path, name, spool, added, .. } = self;
-        let (mut spool, modules) = spool.finish().map_err(LibraryError::unchanged(&path))?;
-        let sharing = Sharing::new(modules);
-        let (header, index, total) = index(&name, &added, &sharing);
+        self.find_modules()?;
+        let Self { path, name, spool, libraries, objects, textures, added, .. } = self;
+        let mut spool = spool.finish().map_err(LibraryError::unchanged(&path))?;
+        let sharing = Sharing::new(objects.all);
+        let textures: Vec<(&String, &PendingTexture)> =
+            added.iter().map(|(name, texture)| (name, &textures[*texture as usize])).collect();
+        let (header, index, total) = index(&name, &textures, &sharing);
         check_limits(&name, &header, total)?;
-        write(target, &header, &index, &mut spool, &sharing, &added)
+        let libraries = libraries.into_iter();
+        let mut libraries: Vec<Box<dyn Source + Send>> = libraries.collect();
+        let mut stores: Vec<&mut dyn Source> = vec![&mut spool];
+        stores.extend(libraries.iter_mut().map(|library| &mut **library as &mut dyn Source));
+        write(target, &header, &index, &mut stores, &sharing, &textures)
             .map_err(LibraryError::unchanged(&path))?;
         Ok(PackSummary {
             entries: header.entries,
             bytes: header.payload.end,
             index_bytes: header.leaves.end,
-            shared_objects: sharing.objects().len() as u64,
+            shared_objects: sharing.shared().len() as u64,
             saved_bytes: sharing.saved_bytes(),
             blake3: header.index_blake3,
         })
@@ -198,26 +412,24 @@ fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryEr
 /// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
 fn index(
     name: &str,
-    added: &BTreeMap<String, PendingTexture>,
+    textures: &[(&String, &PendingTexture)],
     sharing: &Sharing,
 ) -> (Header, Vec<u8>, u64) {
     let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
     // Own bytes of the textures follow each other in the order of names. `write` copies them in the
     // same order.
-    for (name, texture) in added {
-        let place = sharing.place(&texture.spooled, payload);
+    for (name, texture) in textures {
+        let place = sharing.place(&texture.pieces, payload);
         payload = place.own.end;
-        let shared = place.cuts.iter().map(|cut| length(&cut.object));
-        let bytes = length(&place.own) + shared.sum::<u64>();
-        total += bytes;
+        total += texture.bytes;
         pages.add(Entry {
-            name: name.clone(),
+            name: (*name).clone(),
             tags: texture.words.tags.clone(),
             models: texture.words.models.clone(),
             conditions: texture.conditions,
             contact: texture.contact,
             law: texture.law,
-            bytes,
+            bytes: texture.bytes,
             blake3: texture.blake3,
             place,
         });
@@ -237,7 +449,7 @@ fn index(
         leaves: part(leaves.len() as u64),
         shared: part(sharing.bytes()),
         payload: part(payload),
-        entries: added.len() as u64,
+        entries: textures.len() as u64,
         leaf_count,
         index_blake3: *blake3::hash(&index).as_bytes(),
     };
@@ -275,21 +487,34 @@ fn write(
     target: &mut impl Write,
     header: &Header,
     index: &[u8],
-    spool: &mut SpoolReader<impl Store>,
+    stores: &mut [&mut dyn Source],
     sharing: &Sharing,
-    added: &BTreeMap<String, PendingTexture>,
+    textures: &[(&String, &PendingTexture)],
 ) -> io::Result<()> {
     target.write_all(&header.to_bytes())?;
     target.write_all(index)?;
     // `sharing` assigned the places of the objects in this order, and `index` the places of the
     // textures.
-    for object in sharing.objects() {
-        spool.copy(object, target)?;
-    }
-    for texture in added.values() {
-        for piece in sharing.own_pieces(&texture.spooled) {
-            spool.copy(piece, target)?;
+    let own = textures.iter().flat_map(|(_, texture)| sharing.own_pieces(&texture.pieces));
+    let mut pieces = sharing.shared().cloned().chain(own);
+    // Pieces that follow each other in their store, as most of another library do, are copied at
+    // once.
+    let mut run = Piece { store: 0, range: 0..0 };
+    loop {
+        let next = pieces.next();
+        if let Some(Piece { store, range }) = &next
+            && *store == run.store
+            && range.start == run.range.end
+        {
+            run.range.end = range.end;
+            continue;
+        }
+        if let (false, Some(store)) = (run.range.is_empty(), stores.get_mut(run.store as usize)) {
+            store.copy(run.range, target)?;
+        }
+        match next {
+            Some(next) => run = next,
+            None => return target.flush(),
         }
     }
-    target.flush()
 }

@@ -14,6 +14,14 @@ use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
 
+/// Largest number of bytes of the index that are read at once when all entries are listed.
+const READ_AHEAD: u64 = 1 << 20;
+
+/// Pages of the index that are searched for names similar to an absent one.
+const MOST_SEARCHED: usize = 16;
+/// Names that the error about an absent one suggests.
+const MOST_SUGGESTED: usize = 3;
+
 /// An open library of textures. The library reads the bytes of a texture only on request.
 ///
 /// The library caches the page of the index that it used last. If the name of the next texture is
@@ -125,9 +133,35 @@ impl<S: LibrarySource> Library<S> {
     /// [`LibraryError::Absent`] if there is no such texture, or another error if bytes cannot be
     /// read or break a rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
-        let entry =
-            self.entry(name)?.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
-        self.read(&entry)
+        self.read(&self.needed(name)?)
+    }
+
+    /// Reads the entry of a texture that the library should have.
+    ///
+    /// # Errors
+    /// The errors of [`Self::get`].
+    pub fn needed(&self, name: &str) -> Result<Entry, LibraryError> {
+        let absent = || LibraryError::Absent { name: name.to_owned(), nearest: self.nearest(name) };
+        self.entry(name)?.ok_or_else(absent)
+    }
+
+    /// Returns the most similar names, for an error. In a large library, looks only at the page
+    /// that would list the name.
+    fn nearest(&self, name: &str) -> Vec<String> {
+        let leaves = match self.index.leaf_of(name) {
+            _ if self.index.leaves() <= MOST_SEARCHED => 0..self.index.leaves(),
+            Some(leaf) => leaf..leaf + 1,
+            None => 0..0,
+        };
+        // What cannot be read is not suggested.
+        let pages = leaves.filter_map(|leaf| self.leaf(leaf).ok());
+        let names: Vec<String> = pages
+            .flat_map(|page| page.iter().map(|e| e.name.clone()).collect::<Vec<_>>())
+            .collect();
+        htex_base::similar(name, names.iter().map(String::as_str), MOST_SUGGESTED)
+            .into_iter()
+            .map(str::to_owned)
+            .collect()
     }
 
     /// Reads the entry of a texture. Returns `None` if there is no such texture.
@@ -165,9 +199,10 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
-    /// Returns all entries, sorted by name. Pages are read one at a time.
+    /// Returns all entries, sorted by name. Many pages are read at once, and decoded one at a time.
     pub fn entries(&self) -> Entries<'_, S> {
-        Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0 }
+        let ahead = Ahead { start: 0, bytes: Vec::new() };
+        Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0, ahead }
     }
 
     /// Returns the entries of a leaf page. Reads the page unless it is the page in the cache.
@@ -224,6 +259,41 @@ pub struct Entries<'a, S = LocalFile> {
     next_leaf: usize,
     entries: Arc<Vec<Entry>>,
     next: usize,
+    ahead: Ahead,
+}
+
+/// Bytes of the index that were read at once.
+#[derive(Debug)]
+struct Ahead {
+    /// Offset in the file.
+    start: u64,
+    bytes: Vec<u8>,
+}
+
+impl Ahead {
+    fn get(&self, range: &Range<u64>) -> Option<&[u8]> {
+        let from = range.start.checked_sub(self.start)?;
+        let to = range.end.checked_sub(self.start)?;
+        self.bytes.get(usize::try_from(from).ok()?..usize::try_from(to).ok()?)
+    }
+}
+
+impl<S: LibrarySource> Entries<'_, S> {
+    /// Returns the entries of a leaf page. Reads the pages after it, too.
+    fn leaf(&mut self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
+        let index = &self.library.index;
+        let range = index.leaf_range(number).unwrap_or_default();
+        if self.ahead.get(&range).is_none() {
+            let ranges = (number + 1..).map_while(|next| index.leaf_range(next));
+            let ends = ranges.map(|range| range.end);
+            let end = ends.take_while(|end| end - range.start <= READ_AHEAD).last();
+            let range = range.start..end.unwrap_or(range.end);
+            self.ahead =
+                Ahead { start: range.start, bytes: self.library.read_range(range.clone())? };
+        }
+        let page = self.ahead.get(&range).unwrap_or_default();
+        index.read_leaf(number, page).map(Arc::new)
+    }
 }
 
 impl<S: LibrarySource> Iterator for Entries<'_, S> {
@@ -234,7 +304,7 @@ impl<S: LibrarySource> Iterator for Entries<'_, S> {
             if self.next_leaf == self.library.index.leaves() {
                 return None;
             }
-            match self.library.leaf(self.next_leaf) {
+            match self.leaf(self.next_leaf) {
                 Ok(entries) => (self.entries, self.next) = (entries, 0),
                 Err(error) => {
                     (self.entries, self.next) = (Arc::default(), 0);

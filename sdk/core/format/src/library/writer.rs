@@ -5,8 +5,11 @@ use std::path::Path;
 
 use htex_base::files::{FileInProgress, Scratch};
 
+use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::packer::{PackSummary, Packer};
+use crate::library::reader::Library;
+use crate::library::source::LibrarySource;
 use crate::library::spool::ScratchFile;
 
 /// Number of bytes that the writer collects in memory before it writes them.
@@ -64,6 +67,35 @@ impl Writer {
     /// - The bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)
+    }
+
+    /// Adds the textures of another library as they are, without reading each of them. `name`
+    /// returns the new name of an entry, or `None` to leave the texture out. The entries come in
+    /// the order of their names.
+    ///
+    /// The textures are not checked again. [`validate`](crate::library::validate) checks a library
+    /// that may be damaged.
+    ///
+    /// ```no_run
+    /// use htex_format::library::{Library, Writer};
+    /// let mut writer = Writer::create("both.htexlib".as_ref(), "Both")?;
+    /// for part in ["wood", "cloth"] {
+    ///     let library = Library::open(format!("{part}.htexlib").as_ref())?;
+    ///     writer.add_library(library, |entry| Some(format!("{part}/{}", entry.name)))?;
+    /// }
+    /// writer.finish()?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - A page of the other library cannot be read or breaks a rule.
+    /// - A new name breaks a rule, or is there already, as for [`Self::add`].
+    pub fn add_library<S: LibrarySource + Send + 'static>(
+        &mut self,
+        library: Library<S>,
+        name: impl FnMut(&Entry) -> Option<String>,
+    ) -> Result<(), LibraryError> {
+        self.packer.add_library(library, name)
     }
 
     /// Writes the library and renames it to the target.

@@ -3,11 +3,13 @@
 use crate::library_common as common;
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 use common::cases::{four, sharing};
-use common::{Texture, all, module, pack, texture};
+use common::{Texture, all, module, pack, pack_bytes, texture};
 use htex_format::library::{
-    FIRST_READ, Library, LibraryError, LibrarySource, LocalFile, Query, Writer, validate_source,
+    Entry, FIRST_READ, Library, LibraryError, LibrarySource, LocalFile, Query, Writer,
+    validate_source,
 };
 use proptest::prelude::*;
 
@@ -46,7 +48,7 @@ fn textures_come_back_whole_and_in_order_of_their_names() {
             assert_eq!(library.get(&name).unwrap(), bytes);
         }
         let absent = library.get("wood/walnut").unwrap_err();
-        assert!(matches!(&absent, LibraryError::Absent { name } if name == "wood/walnut"));
+        assert!(matches!(&absent, LibraryError::Absent { name, .. } if name == "wood/walnut"));
         assert!(library.entry("").unwrap().is_none());
     }
 }
@@ -191,6 +193,113 @@ fn textures() -> impl Strategy<Value = Vec<Texture>> {
     proptest::collection::vec(one, 0..12)
 }
 
+/// One texture under several names, alone, with a shared module and beside a texture that has the
+/// module, too.
+#[test]
+fn equal_textures_are_stored_once() {
+    let mut with_module = texture("felt");
+    with_module.modules = vec![module(1, 300)];
+    let mut other = texture("linen");
+    other.modules = with_module.modules.clone();
+    let plain = texture("oak").bytes();
+    let named = |name: &str, bytes: &[u8]| (name.to_owned(), bytes.to_vec());
+    let (first, second) = (with_module.bytes(), other.bytes());
+    let textures: BTreeMap<_, _> = [
+        named("oak", &plain),
+        named("copy/oak", &plain),
+        named("felt", &first),
+        named("a felt", &first),
+        named("linen", &second),
+    ]
+    .into();
+    let (packed, file) = pack_bytes("Equal", &textures);
+    valid(&file);
+    assert_eq!(all(&file), textures.clone().into_iter().collect::<Vec<_>>());
+    let all: usize = textures.values().map(Vec::len).sum();
+    let stored = packed.bytes - packed.index_bytes;
+    assert_eq!(stored, all as u64 - packed.saved_bytes);
+    // Each texture once, and the module once.
+    assert!(stored <= (plain.len() + first.len() + second.len() - 300) as u64, "{stored}");
+}
+
+/// A change of a library.
+#[derive(Debug, Clone)]
+enum Change {
+    Remove(usize),
+    Rename(usize, String),
+    Add(Texture, String),
+    /// The same texture under another name.
+    Copy(usize, String),
+    Merge(Vec<Texture>),
+}
+
+fn changes() -> impl Strategy<Value = Vec<Change>> {
+    let name = || "[a-c]{1,3}(/[a-c]{1,3}){0,1}";
+    let one = prop_oneof![
+        any::<usize>().prop_map(Change::Remove),
+        (any::<usize>(), name()).prop_map(|(i, name)| Change::Rename(i, name)),
+        (textures(), name()).prop_filter_map("no texture", |(all, name)| Some(Change::Add(
+            all.into_iter().next()?,
+            name
+        ))),
+        (any::<usize>(), name()).prop_map(|(i, name)| Change::Copy(i, name)),
+        textures().prop_map(Change::Merge),
+    ];
+    proptest::collection::vec(one, 1..8)
+}
+
+/// Carries a change out, on a library and on the textures that it has.
+fn change(file: &[u8], model: &mut BTreeMap<String, Vec<u8>>, change: &Change) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("changed.htexlib");
+    let mut writer = Writer::create(&path, "Any").unwrap();
+    let library = || Library::open_source(file.to_vec()).unwrap();
+    let nth = |i: &usize| model.keys().nth(i % model.len().max(1)).cloned();
+    let is_new = |name: &String| !model.contains_key(name);
+    let all = |entry: &Entry| Some(entry.name.clone());
+    match change {
+        Change::Remove(i) => {
+            let gone = nth(i);
+            let kept = |entry: &Entry| all(entry).filter(|name| Some(name) != gone.as_ref());
+            writer.add_library(library(), kept).unwrap();
+            gone.map(|name| model.remove(&name));
+        }
+        Change::Rename(i, to) if is_new(to) => {
+            let from = nth(i);
+            let renamed = |entry: &Entry| {
+                all(entry).map(|name| if Some(&name) == from.as_ref() { to.clone() } else { name })
+            };
+            writer.add_library(library(), renamed).unwrap();
+            if let Some(bytes) = from.and_then(|name| model.remove(&name)) {
+                model.insert(to.clone(), bytes);
+            }
+        }
+        Change::Add(texture, to) if is_new(to) => {
+            writer.add(to, &texture.bytes()).unwrap();
+            writer.add_library(library(), all).unwrap();
+            model.insert(to.clone(), texture.bytes());
+        }
+        Change::Copy(i, to) if is_new(to) && !model.is_empty() => {
+            let bytes = model[&nth(i).unwrap()].clone();
+            writer.add_library(library(), all).unwrap();
+            writer.add(to, &bytes).unwrap();
+            model.insert(to.clone(), bytes);
+        }
+        Change::Merge(textures) => {
+            let mut others: BTreeMap<String, Vec<u8>> =
+                textures.iter().map(|t| (t.name.clone(), t.bytes())).collect();
+            others.retain(|name, _| is_new(name));
+            let (_, other) = pack_bytes("Other", &others);
+            writer.add_library(library(), all).unwrap();
+            writer.add_library(Library::open_source(other).unwrap(), all).unwrap();
+            model.extend(others);
+        }
+        _ => writer.add_library(library(), all).unwrap(),
+    }
+    writer.finish().unwrap();
+    std::fs::read(path).unwrap()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..Default::default() })]
     #[test]
@@ -201,5 +310,17 @@ proptest! {
         valid(&file);
         let expected: Vec<_> = textures.iter().map(|t| (t.name.clone(), t.bytes())).collect();
         prop_assert_eq!(all(&file), expected);
+    }
+
+    /// A changed library is the one that would be packed of what it has.
+    #[test]
+    fn any_changes_give_the_library_that_is_packed_of_the_result(changes in changes()) {
+        let mut model = BTreeMap::new();
+        let (_, mut file) = pack_bytes("Any", &model);
+        for one in &changes {
+            file = change(&file, &mut model, one);
+            prop_assert!(file == pack_bytes("Any", &model).1, "{one:?}");
+        }
+        valid(&file);
     }
 }

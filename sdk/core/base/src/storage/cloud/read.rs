@@ -31,6 +31,11 @@ impl Version {
         Self { bytes: meta.size, etag: meta.e_tag.clone(), modified }
     }
 
+    /// The version of a file of which only its size is known.
+    pub(crate) fn unknown(bytes: u64) -> Self {
+        Self { bytes, etag: None, modified: 0 }
+    }
+
     /// Returns the tag for the header `If-Match`, which compares only strong tags.
     fn strong_etag(&self) -> Option<String> {
         self.etag.clone().filter(|etag| !etag.starts_with("W/"))
@@ -169,7 +174,6 @@ impl Store {
 
 impl ReadPart {
     fn of_empty() -> Self {
-        let version = Version { bytes: 0, etag: None, modified: 0 };
-        Self { bytes: Vec::new(), version }
+        Self { bytes: Vec::new(), version: Version::unknown(0) }
     }
 }

@@ -7,7 +7,7 @@ use htex_format::library::{Limits, validate_source};
 use serde_json::json;
 
 use super::raw::{Raw, crc32};
-use super::{Texture, module, pack, texture};
+use super::{Texture, module, pack, pack_bytes, texture};
 
 /// A conformance file.
 pub struct Case {
@@ -84,6 +84,13 @@ pub fn sharing() -> Vec<Texture> {
     three
 }
 
+/// Textures under two names each, one of them with a module.
+fn equal() -> Vec<u8> {
+    let (felt, shared) = (texture("felt").bytes(), sharing()[2].bytes());
+    let names = ["felt", "felt again", "shared", "wood/shared"].map(str::to_owned);
+    pack_bytes("Equal", names.iter().zip([&felt, &felt, &shared, &shared])).1
+}
+
 fn raw() -> Raw {
     Raw::of(&four(), 2)
 }
@@ -94,6 +101,7 @@ fn valid() -> Vec<Named> {
         ("valid_one", pack("One", &four()[..1]).1),
         ("valid_four", pack("Four", &four()).1),
         ("valid_shared", pack("Shared", &sharing()).1),
+        ("valid_equal", equal()),
         ("valid_small_leaves", raw().bytes()),
         (
             "valid_newer_minor",

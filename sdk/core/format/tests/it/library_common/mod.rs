@@ -84,11 +84,21 @@ impl Texture {
 
 /// Packs textures in the given order. Returns what was written, and the file.
 pub fn pack(name: &str, textures: &[Texture]) -> (PackSummary, Vec<u8>) {
+    let all = textures.iter().map(|texture| (texture.name.clone(), texture.bytes()));
+    let all: Vec<_> = all.collect();
+    pack_bytes(name, all.iter().map(|(name, bytes)| (name, bytes)))
+}
+
+/// Packs assets under their names.
+pub fn pack_bytes<'a>(
+    name: &str,
+    textures: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>,
+) -> (PackSummary, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("packed.htexlib");
     let mut writer = Writer::create(&path, name).unwrap();
-    for texture in textures {
-        writer.add(&texture.name, &texture.bytes()).unwrap();
+    for (name, bytes) in textures {
+        writer.add(name, bytes).unwrap();
     }
     let packed = writer.finish().unwrap();
     (packed, std::fs::read(path).unwrap())

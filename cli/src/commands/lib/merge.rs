@@ -1,0 +1,77 @@
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use htex_build::{LibraryMerge, OnConflict};
+
+use super::pack::PackReport;
+use crate::failure::{Failure, Result};
+use crate::located;
+use crate::output::show;
+use crate::outputs::check_outputs;
+
+/// Merge libraries into one
+///
+/// All textures stay the same, byte for byte. The result is the library that `htex lib pack` would
+/// write of all their textures. Equal textures of one name are no conflict.
+#[derive(Args)]
+pub(crate) struct Merge {
+    /// The libraries
+    #[arg(required = true, num_args = 1.., value_name = "LIBRARY", value_parser = located::RECORDING)]
+    libraries: Vec<PathBuf>,
+
+    /// The library to write
+    #[arg(short, long, value_name = "HTEXLIB", value_parser = located::OUTPUT)]
+    output: PathBuf,
+
+    /// Texts to put before the names, one for each library, e.g. wood/,cloth/
+    #[arg(long, value_name = "TEXT,…", value_delimiter = ',')]
+    prefix: Vec<String>,
+
+    /// Which texture to take if several libraries have different textures of one name
+    #[arg(long, value_enum, default_value = "error")]
+    on_conflict: Conflict,
+
+    /// Name of the merged library [default: the file's name]
+    #[arg(long)]
+    name: Option<String>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Conflict {
+    /// None: end with an error
+    Error,
+    /// The one of the library that is named first
+    First,
+    /// The one of the library that is named last
+    Last,
+}
+
+impl Merge {
+    pub(crate) fn run(self) -> Result {
+        let Self { libraries, output, prefix, .. } = self;
+        check_outputs([output.as_path()], libraries.iter().map(PathBuf::as_path))?;
+        if !prefix.is_empty() && prefix.len() != libraries.len() {
+            return Err(Failure::Usage(format!(
+                "--prefix: there are {} libraries; give one text for each, which may be empty",
+                libraries.len()
+            )));
+        }
+        let prefixes = prefix.into_iter().chain(std::iter::repeat(String::new()));
+        let merge = LibraryMerge {
+            libraries: libraries.into_iter().zip(prefixes).collect(),
+            on_conflict: match self.on_conflict {
+                Conflict::Error => OnConflict::Error,
+                Conflict::First => OnConflict::First,
+                Conflict::Last => OnConflict::Last,
+            },
+        };
+        let stem = output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = self.name.unwrap_or(stem);
+        let packed = merge.run(&output, &name)?;
+        show(&PackReport { file: &output, name, packed }, self.json)
+    }
+}

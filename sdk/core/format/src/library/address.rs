@@ -1,0 +1,34 @@
+//! Addresses of single textures in a library: `cloth.htexlib#woven/cotton`.
+
+use crate::library::header::EXTENSION;
+
+/// Splits the address of a texture in a library into the address of the library and the name of the
+/// texture. Returns `None` for any other address.
+///
+/// The library is a path or a URI. Its file name ends in `.htexlib`.
+///
+/// ```
+/// use htex_format::library::split_address;
+/// assert_eq!(split_address("cloth.htexlib#woven/cotton"), Some(("cloth.htexlib", "woven/cotton")));
+/// assert_eq!(
+///     split_address("https://example.org/cloth.htexlib?key=1#oak"),
+///     Some(("https://example.org/cloth.htexlib?key=1", "oak"))
+/// );
+/// assert_eq!(split_address("cloth.htexlib"), None);
+/// assert_eq!(split_address("cloth#1.htex"), None);
+/// ```
+#[must_use]
+pub fn split_address(address: &str) -> Option<(&str, &str)> {
+    let is_library = |library: &str| {
+        let path = match library.split_once('?') {
+            Some((path, _)) if path.contains("://") => path,
+            _ => library,
+        };
+        let end = path.rsplit_once('.').map(|(_, extension)| extension);
+        end.is_some_and(|extension| extension.eq_ignore_ascii_case(EXTENSION))
+    };
+    // A name may contain `#`, too.
+    let mut marks = address.match_indices('#').map(|(at, _)| address.split_at(at));
+    let (library, rest) = marks.find(|(library, _)| is_library(library))?;
+    Some((library, &rest[1..]))
+}

@@ -1,0 +1,110 @@
+//! Selects textures of a library by a property, such as `license=CC*`.
+
+use std::str::FromStr;
+
+use htex_format::library::{Entry, NamePattern};
+use htex_format::{Contact, Manifest};
+
+use crate::BuildError;
+
+/// A property that textures must have: a field and a pattern of its values.
+///
+/// ```
+/// let filter: htex_build::Filter = "license=CC*".parse()?;
+/// assert!("licence=CC*".parse::<htex_build::Filter>().is_err());
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Filter {
+    field: Field,
+    pattern: NamePattern,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Field {
+    Name,
+    Tag,
+    Model,
+    Contact,
+    License,
+    Author,
+    Quantity,
+}
+
+/// Names of the fields.
+const FIELDS: [(&str, Field); 7] = [
+    ("name", Field::Name),
+    ("tag", Field::Tag),
+    ("model", Field::Model),
+    ("contact", Field::Contact),
+    ("license", Field::License),
+    ("author", Field::Author),
+    ("quantity", Field::Quantity),
+];
+
+impl FromStr for Filter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let names = || FIELDS.map(|(name, _)| name).join(", ");
+        let (name, pattern) = text
+            .split_once('=')
+            .ok_or_else(|| format!("{text}: give FIELD=VALUE; the fields are {}", names()))?;
+        let field = FIELDS.iter().find(|(known, _)| *known == name).map(|(_, field)| *field);
+        let field = field.ok_or_else(|| {
+            format!("there is no field {name} to select textures by; there are {}", names())
+        })?;
+        Ok(Self { field, pattern: pattern.parse()? })
+    }
+}
+
+impl Filter {
+    /// Returns whether a texture of a library matches all filters. `manifest` reads its manifest,
+    /// which is needed only for fields that the index does not have.
+    pub(crate) fn all<'m>(
+        filters: &[Self],
+        entry: &Entry,
+        manifest: &dyn Fn() -> Result<&'m Manifest, BuildError>,
+    ) -> Result<bool, BuildError> {
+        for filter in filters {
+            let matches = match filter.field {
+                Field::License | Field::Author | Field::Quantity => {
+                    filter.matches_manifest(&entry.name, manifest()?)
+                }
+                _ => filter.matches(&entry.name, &entry.tags, &entry.models, entry.contact),
+            };
+            if !matches {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Returns whether a texture matches.
+    pub(crate) fn matches_manifest(&self, name: &str, manifest: &Manifest) -> bool {
+        let stated =
+            |text: &Option<String>| self.pattern.matches_text(text.as_deref().unwrap_or(""));
+        match self.field {
+            Field::License => stated(&manifest.license),
+            Field::Author => stated(&manifest.author),
+            Field::Quantity => self.pattern.matches_text(manifest.quantity.name()),
+            _ => {
+                let models = manifest.representations.iter().map(|r| r.model.clone());
+                let models: Vec<String> = models.collect();
+                self.matches(name, &manifest.tags, &models, manifest.contact)
+            }
+        }
+    }
+
+    fn matches(&self, name: &str, tags: &[String], models: &[String], contact: Contact) -> bool {
+        let is = |text: &str| self.pattern.matches_text(text);
+        match self.field {
+            Field::Name => self.pattern.matches(name),
+            Field::Tag => tags.iter().any(|tag| is(tag)),
+            Field::Model => models.iter().any(|id| is(id) || id.rsplit('.').next().is_some_and(is)),
+            Field::Contact => is(contact.name()),
+            // Only manifests have the others.
+            _ => false,
+        }
+    }
+}

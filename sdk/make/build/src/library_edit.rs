@@ -1,0 +1,343 @@
+//! Changes libraries without their recordings: removes, renames and adds textures, and edits their
+//! metadata.
+
+use std::cell::OnceCell;
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use htex_author::settings::Metadata;
+use htex_base::files::{AtFile, read_regular};
+use htex_format::library::{Entry, Library, LibraryError, NamePattern, PackSummary, Writer};
+use htex_format::{Asset, Limits, Manifest};
+use rayon::prelude::*;
+
+use crate::BuildError;
+use crate::error::at_place;
+use crate::filter::Filter;
+use crate::metadata_table::MetadataTable;
+
+/// Changes of a library. Textures are removed first, then renamed, then added. After that, the
+/// metadata change.
+///
+/// ```no_run
+/// use htex_build::LibraryEdit;
+/// let edit = LibraryEdit { remove: vec!["old/*".parse()?], ..LibraryEdit::default() };
+/// let summary = edit.run("cloth.htexlib".as_ref(), "cloth.htexlib".as_ref(), &|_| {})?;
+/// println!("{} textures removed", summary.removed);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct LibraryEdit {
+    /// Names of the textures to remove.
+    pub remove: Vec<NamePattern>,
+    /// Old and new names of textures.
+    pub rename: Vec<(String, String)>,
+    /// Textures to add.
+    pub add: Vec<Addition>,
+    /// Metadata to set, in each texture.
+    pub metadata: Metadata,
+    /// Tags to add to those of each texture.
+    pub add_tags: Vec<String>,
+    /// Tags to remove from those of each texture.
+    pub remove_tags: Vec<String>,
+    /// A CSV file with metadata of single textures. The column `texture` has their names, and the
+    /// other columns have the names of the metadata.
+    pub table: Option<PathBuf>,
+    /// Only textures that match all of these are removed, or get other metadata.
+    pub filters: Vec<Filter>,
+    /// Whether added and edited textures may state no licence.
+    pub allows_unlicensed: bool,
+}
+
+/// Textures to add to a library.
+#[derive(Debug, Clone)]
+pub enum Addition {
+    /// The file of a texture, and its name in the library.
+    Texture { name: String, file: PathBuf },
+    /// All textures of another library, under their names.
+    Library(PathBuf),
+}
+
+/// What an edit changed.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct EditSummary {
+    /// Name of the library.
+    pub name: String,
+    /// Number of textures that were removed.
+    pub removed: usize,
+    /// Number of textures that have another name.
+    pub renamed: usize,
+    /// Number of textures that were added.
+    pub added: usize,
+    /// Number of textures with other metadata.
+    pub edited: usize,
+    /// The library that was written.
+    pub packed: PackSummary,
+}
+
+/// Number of textures that are edited at once, on all processors.
+const BATCH: usize = 1024;
+
+impl LibraryEdit {
+    /// Returns whether there is nothing to change.
+    pub fn is_empty(&self) -> bool {
+        let is_known = self.remove.is_empty() && self.rename.is_empty() && self.add.is_empty();
+        is_known && !self.changes_all() && self.table.is_none()
+    }
+
+    /// Changes a library, and writes it to `output`, which may be the same file. `told` is called
+    /// with the number of textures that were edited so far.
+    ///
+    /// # Errors
+    /// - A file cannot be read or written.
+    /// - The library has no texture that should be removed or renamed, or that the table names.
+    /// - A new name is there already.
+    /// - A changed texture would not be valid, or states no licence.
+    ///
+    /// After an error, the file at `output` is unchanged.
+    pub fn run(
+        &self,
+        library: &Path,
+        output: &Path,
+        told: &dyn Fn(usize),
+    ) -> Result<EditSummary, BuildError> {
+        let of_library = |error: LibraryError| BuildError::at_place(library.display(), error);
+        let of_output = |error: LibraryError| BuildError::at_place(output.display(), error);
+        let opened = Library::open(library).map_err(of_library)?;
+        let table = self.table.as_deref().map(MetadataTable::read).transpose()?;
+        let table = table.unwrap_or_default();
+        let renames: BTreeMap<&str, &str> =
+            self.rename.iter().map(|(old, new)| (old.as_str(), new.as_str())).collect();
+        let name = opened.name().to_owned();
+        let mut writer = Writer::create(output, &name).map_err(of_output)?;
+        if self.allows_unlicensed {
+            writer.allow_unlicensed();
+        }
+        let mut run = Run { edit: self, table, writer, edited: 0, told };
+        let (mut removed, mut renamed) = (0, 0);
+        let mut used = vec![false; self.remove.len()];
+        let mut unused: BTreeMap<&str, &str> = renames.clone();
+        run.take(library, opened, |entry, is_chosen| {
+            let is_removed =
+                self.remove.iter().zip(&mut used).fold(false, |is, (pattern, used)| {
+                    let matches = pattern.matches(&entry.name);
+                    *used |= matches;
+                    is || matches
+                });
+            if is_removed && is_chosen {
+                removed += 1;
+                return None;
+            }
+            unused.remove(entry.name.as_str());
+            Some(match renames.get(entry.name.as_str()) {
+                Some(new) => {
+                    renamed += 1;
+                    (*new).to_owned()
+                }
+                None => entry.name.clone(),
+            })
+        })?;
+        let again = || Library::open(library).map_err(of_library);
+        let absent = |name: &str| again()?.needed(name).map(|_| ()).map_err(of_library);
+        if let Some(pattern) = self.remove.iter().zip(used).find(|(_, used)| !used).map(|(p, _)| p)
+        {
+            if !pattern.is_pattern() {
+                absent(pattern.as_str())?;
+            }
+            let problem =
+                format!("no texture is called {pattern}; list the names with `htex lib ls`");
+            return Err(BuildError::at_place(library.display(), problem));
+        }
+        if let Some((old, _)) = unused.pop_first() {
+            absent(old)?;
+        }
+        let added = run.add()?;
+        if let Some(name) = run.table.unused() {
+            absent(name)?;
+        }
+        let edited = run.edited;
+        let packed = run.writer.finish().map_err(of_output)?;
+        Ok(EditSummary { name, removed, renamed, added, edited, packed })
+    }
+}
+
+/// An edit that is being carried out.
+struct Run<'a> {
+    edit: &'a LibraryEdit,
+    table: MetadataTable,
+    writer: Writer,
+    edited: usize,
+    told: &'a dyn Fn(usize),
+}
+
+impl Run<'_> {
+    /// Takes the textures of a library over. `name` returns their new names, and is told whether
+    /// they match the filters.
+    fn take(
+        &mut self,
+        path: &Path,
+        library: Library,
+        mut name: impl FnMut(&Entry, bool) -> Option<String>,
+    ) -> Result<(), BuildError> {
+        let of_library = |error: LibraryError| BuildError::at_place(path.display(), error);
+        let mut kept: BTreeMap<String, String> = BTreeMap::new();
+        let mut batch = Vec::new();
+        for entry in library.entries() {
+            let entry = entry.map_err(of_library)?;
+            let manifest = OnceCell::new();
+            let read = || self.manifest(&manifest, &library, &entry).map_err(of_library);
+            let is_chosen = Filter::all(&self.edit.filters, &entry, &read)?;
+            let Some(name) = name(&entry, is_chosen) else { continue };
+            let row = self.table.take(&entry.name);
+            if (is_chosen && self.edit.changes_all()) || row.is_some() {
+                batch.push(Pending { entry, name, is_chosen, row });
+                if batch.len() == BATCH {
+                    self.edit_batch(path, &library, &mut batch, &mut kept)?;
+                }
+            } else {
+                kept.insert(entry.name, name);
+            }
+        }
+        self.edit_batch(path, &library, &mut batch, &mut kept)?;
+        let added = self.writer.add_library(library, |entry| kept.remove(&entry.name));
+        added.map_err(of_library)
+    }
+
+    fn manifest<'m>(
+        &self,
+        cell: &'m OnceCell<Manifest>,
+        library: &Library,
+        entry: &Entry,
+    ) -> Result<&'m Manifest, LibraryError> {
+        if let Some(manifest) = cell.get() {
+            return Ok(manifest);
+        }
+        let bytes = library.read(entry)?;
+        let asset = Asset::from_bytes(&bytes).map_err(|error| LibraryError::Asset {
+            name: entry.name.clone(),
+            error: Box::new(error),
+        })?;
+        Ok(cell.get_or_init(|| asset.manifest))
+    }
+
+    /// Edits the textures of a batch. Those in which nothing changes are kept as they are.
+    fn edit_batch(
+        &mut self,
+        path: &Path,
+        library: &Library,
+        batch: &mut Vec<Pending>,
+        kept: &mut BTreeMap<String, String>,
+    ) -> Result<(), BuildError> {
+        let edit = self.edit;
+        let edited: Vec<_> = batch
+            .par_iter()
+            .map(|texture| {
+                let bytes = library.read(&texture.entry).map_err(at_place(path.display()))?;
+                let place = format!("{}, texture {}", path.display(), texture.entry.name);
+                edit.edited(&bytes, texture.is_chosen, texture.row.as_ref(), &place)
+            })
+            .collect();
+        for (texture, bytes) in batch.drain(..).zip(edited) {
+            match bytes? {
+                None => {
+                    kept.insert(texture.entry.name, texture.name);
+                }
+                Some(bytes) => {
+                    self.writer.add(&texture.name, &bytes).map_err(at_place(path.display()))?;
+                    self.edited += 1;
+                }
+            }
+        }
+        (self.told)(self.edited);
+        Ok(())
+    }
+
+    /// Adds the additions, and returns how many textures were added.
+    fn add(&mut self) -> Result<usize, BuildError> {
+        let mut count = 0;
+        for addition in &self.edit.add {
+            match addition {
+                Addition::Library(path) => {
+                    let opened = Library::open(path).map_err(at_place(path.display()))?;
+                    let mut names = HashSet::new();
+                    self.take(path, opened, |entry, _| {
+                        names.insert(entry.name.clone());
+                        Some(entry.name.clone())
+                    })?;
+                    count += names.len();
+                }
+                Addition::Texture { name, file } => {
+                    let most = Limits::default().file_bytes;
+                    let bytes = read_regular(file, most).reading(file)?;
+                    let place = file.display().to_string();
+                    let row = self.table.take(name);
+                    let is_chosen = self.edit.is_chosen(name, &bytes, &place)?;
+                    let edited = self.edit.edited(&bytes, is_chosen, row.as_ref(), &place)?;
+                    let bytes = edited.unwrap_or(bytes);
+                    self.writer.add(name, &bytes).map_err(at_place(&place))?;
+                    count += 1;
+                }
+            }
+        }
+        Ok(count)
+    }
+}
+
+/// A texture of a library that may get other metadata.
+struct Pending {
+    entry: Entry,
+    /// Its new name.
+    name: String,
+    is_chosen: bool,
+    row: Option<Metadata>,
+}
+
+impl LibraryEdit {
+    /// Returns whether each texture may get other metadata.
+    fn changes_all(&self) -> bool {
+        !(self.metadata.is_empty() && self.add_tags.is_empty() && self.remove_tags.is_empty())
+    }
+
+    fn is_chosen(&self, name: &str, bytes: &[u8], place: &str) -> Result<bool, BuildError> {
+        if self.filters.is_empty() {
+            return Ok(true);
+        }
+        let manifest = Asset::from_bytes(bytes).map_err(at_place(place))?.manifest;
+        Ok(self.filters.iter().all(|filter| filter.matches_manifest(name, &manifest)))
+    }
+
+    /// Returns the bytes of a texture with other metadata; `None` if it has them already.
+    fn edited(
+        &self,
+        bytes: &[u8],
+        is_chosen: bool,
+        row: Option<&Metadata>,
+        place: &str,
+    ) -> Result<Option<Vec<u8>>, BuildError> {
+        let changes = is_chosen && self.changes_all();
+        if !changes && row.is_none() {
+            return Ok(None);
+        }
+        let mut asset = htex_author::edit(bytes, &Metadata::default()).map_err(at_place(place))?;
+        let before = asset.manifest.clone();
+        if changes {
+            self.metadata.apply(&mut asset.manifest);
+            let tags = &mut asset.manifest.tags;
+            tags.retain(|tag| !self.remove_tags.contains(tag));
+            for tag in &self.add_tags {
+                if !tags.contains(tag) {
+                    tags.push(tag.clone());
+                }
+            }
+        }
+        // What the table says of one texture replaces what is said of all.
+        if let Some(row) = row {
+            row.apply(&mut asset.manifest);
+        }
+        if asset.manifest == before {
+            return Ok(None);
+        }
+        asset.to_bytes().map(Some).map_err(at_place(place))
+    }
+}

@@ -97,7 +97,7 @@ impl Origin {
     }
 
     /// Returns the name for a copy. Messages and formats depend on it.
-    fn file_name(&self) -> Option<String> {
+    fn file_name(&self, role: Role) -> Option<String> {
         match self {
             Self::File(location) => location.file_name(),
             Self::Texture { name, .. } if name.is_pattern() => Some("textures".to_owned()),
@@ -105,6 +105,7 @@ impl Origin {
                 let last = name.as_str().rsplit('/').next().unwrap_or_default();
                 Some(format!("{last}.htex"))
             }
+            Self::StandardInput if role == Role::Asset => Some("standard-input.htex".to_owned()),
             Self::StandardInput => Some("standard-input".to_owned()),
         }
     }
@@ -298,7 +299,7 @@ impl Copies {
             Some(file) => return Ok(file.local.clone()),
             None => {}
         }
-        let Some(name) = origin.file_name() else {
+        let Some(name) = origin.file_name(role) else {
             return Err(format!("{origin}: it has no file name at its end; name a file"));
         };
         let failed = |error| format!("no temporary folder for {origin}: {error}");

@@ -134,7 +134,7 @@ fn a_texture_of_a_library_elsewhere_is_read_alone() {
     place.write("cloth.htex", asset());
     let pack = ["lib", "pack", "all.htexlib", "cloth.htex", "--unlicensed"];
     assert_eq!(place.run(&pack).code(), 0);
-    server.put("surfaces/all.htexlib", &std::fs::read(place.path("all.htexlib")).unwrap());
+    server.put("surfaces/all.htexlib", std::fs::read(place.path("all.htexlib")).unwrap());
     let uri = "s3://surfaces/all.htexlib#cloth";
     let there = bench.run(&["spectrum", uri, "--json"]);
     assert_eq!(there.code(), 0, "{}", there.error());

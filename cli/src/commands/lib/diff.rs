@@ -90,7 +90,7 @@ struct Walk<'a> {
 enum Found {
     Removed(Entry),
     Added(Entry),
-    Changed(Entry, Entry),
+    Changed(Box<(Entry, Entry)>),
 }
 
 impl Diff {
@@ -135,7 +135,7 @@ impl Diff {
                 Found::Added(entry) => {
                     added.entry(entry.blake3).or_insert_with(Vec::new).push(entry.name);
                 }
-                Found::Changed(a, b) => changed.push((a, b)),
+                Found::Changed(both) => changed.push(*both),
             }
         }
         for entry in removed {
@@ -202,7 +202,9 @@ fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Vec<Found>> {
         let ours = if order.is_le() { a.step()? } else { None };
         let theirs = if order.is_ge() { b.step()? } else { None };
         match (ours, theirs) {
-            (Some(a), Some(b)) if a.blake3 != b.blake3 => found.push(Found::Changed(a, b)),
+            (Some(a), Some(b)) if a.blake3 != b.blake3 => {
+                found.push(Found::Changed(Box::new((a, b))))
+            }
             (Some(a), None) => found.push(Found::Removed(a)),
             (None, Some(b)) => found.push(Found::Added(b)),
             _ => {}
@@ -217,7 +219,7 @@ impl Differences {
             match one {
                 Found::Removed(entry) => all.only_in_a.push(entry.name),
                 Found::Added(entry) => all.only_in_b.push(entry.name),
-                Found::Changed(entry, _) => all.changed.push(entry.name),
+                Found::Changed(both) => all.changed.push(both.0.name),
             }
         }
         all

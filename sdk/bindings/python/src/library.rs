@@ -149,6 +149,7 @@ impl Library {
     /// Changes a library file: removes, renames and adds textures, and then sets metadata and tags.
     /// Writes the result to `output`, or replaces the library.
     #[staticmethod]
+    #[allow(clippy::too_many_arguments, reason = "the keywords of a Python function")]
     #[pyo3(signature = (path, output=None, *, remove=Vec::new(), rename=BTreeMap::new(), add=BTreeMap::new(), add_libraries=Vec::new(), metadata=None, add_tags=Vec::new(), remove_tags=Vec::new(), filters=BTreeMap::new(), table=None, unlicensed=false))]
     fn edit<'py>(
         py: Python<'py>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use htex::format::{Asset, write_file};
 use htex::library::storage::{Location, Storage};
-use htex::library::{Library, split_address};
+use htex::library::{Library, LibraryError, split_address};
 use htex::play::{Effects, Parameter, Synthesis};
 use htex::{Motion, Representation, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
@@ -42,7 +42,9 @@ pub(crate) fn open(
     py.detach(|| {
         let data = match &opened {
             Source::File(path) => match path.to_str().and_then(split_address) {
-                Some((library, name)) => Asset::from_bytes(&in_library(library, name)?),
+                Some((library, name)) => {
+                    Asset::from_bytes(&in_library(library, name).map_err(raised)?)
+                }
                 None => Asset::open(path),
             },
             Source::Bytes(bytes) => Asset::from_bytes(bytes),
@@ -52,11 +54,9 @@ pub(crate) fn open(
 }
 
 /// Reads a texture of a library.
-fn in_library(library: &str, name: &str) -> PyResult<Vec<u8>> {
-    let location = Location::parse(library.as_ref()).map_err(raised)?;
-    let storage = Storage::from_environment().map_err(raised)?;
-    let library = Library::open_located(&storage, &location).map_err(raised)?;
-    library.get(name).map_err(raised)
+fn in_library(library: &str, name: &str) -> Result<Vec<u8>, LibraryError> {
+    let location = Location::parse(library.as_ref())?;
+    Library::open_located(&Storage::from_environment()?, &location)?.get(name)
 }
 
 /// A file, or the bytes of a file.

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use htex::library::Library;
-use htex::library::{LibraryError, LibrarySource, LocalFile};
+use htex::library::{LibrarySource, LocalFile};
 
 use super::htex_library;
 use crate::asset::{htex_asset, keep};

@@ -24,7 +24,7 @@ fn a_file_is_read_without_credentials() {
     let mut part = [0; 2];
     whole.read_at(150_000, &mut part).unwrap();
     assert_eq!((whole.len(), &part[..]), (200_000, &bytes[150_000..150_002]));
-    server.put("web/large.csv", &vec![0; (1 << 20) + 1]);
+    server.put("web/large.csv", vec![0; (1 << 20) + 1]);
     let large = at(&format!("{}/web/large.csv", server.url()));
     assert!(said(storage(&server).open(&large, 16)).contains("whole files only"));
     server.fail(|_, _| Fault::None);

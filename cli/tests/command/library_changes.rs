@@ -268,6 +268,38 @@ fn a_difference_is_told_in_detail() {
     assert_eq!((same.code(), same.text()), (0, "nothing differs\n".to_owned()));
 }
 
+#[test]
+fn a_library_is_exported_with_a_table_of_what_is_lost() {
+    let place = place();
+    let export = ["lib", "export", "all.htexlib", "--to", "ahap,wav,gltf", "-o", "out"];
+    let run = place.run(&[&export[..], &["--where", "tag=hard", "--seconds", "0.5"]].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    assert_eq!(run.text(), "out: 6 of 6 files, and exported.csv\n");
+    let table = String::from_utf8(bytes(&place, "out/exported.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 7, "{table}");
+    assert!(rows[0].starts_with("texture,format,file,bytes,level_db,felt_rms_db"), "{table}");
+    assert!(rows[1].starts_with("wood/elm,ahap,wood/elm.ahap,"), "{table}");
+    // The bytes are those of `htex export`.
+    let one =
+        ["export", "all.htexlib#wood/oak", "--to", "ahap", "--seconds", "0.5", "-o", "oak.ahap"];
+    assert_eq!(place.run(&one).code(), 0);
+    assert!(bytes(&place, "out/wood/oak.ahap") == bytes(&place, "oak.ahap"));
+    place.run(&export).failed(1, &["it is there already", "--force"]);
+
+    // A texture that cannot be exported is in the table, and the others are exported.
+    let silent = ["--level", "0", "--license", "CC0-1.0", "--at", "speed=80,force=0.5"];
+    let by = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5"];
+    assert_eq!(place.run(&[&by[..], &silent, &["-o", "silent.htex"]].concat()).code(), 0);
+    assert_eq!(place.run(&["lib", "edit", "all.htexlib", "--add", "silent.htex"]).code(), 0);
+    let run = place.run(&["lib", "export", "all.htexlib", "--to", "ahap", "-o", "again", "--json"]);
+    assert_eq!(run.code(), 3, "{}", run.error());
+    let said: Value = serde_json::from_str(&run.text()).unwrap();
+    let failed = said.as_array().unwrap().iter().filter(|row| row.get("problem").is_some());
+    let failed: Vec<_> = failed.map(|row| &row["texture"]).collect();
+    assert_eq!(failed, ["silent"], "{said}");
+}
+
 /// At any write, and at any time.
 #[cfg(unix)]
 #[test]

@@ -4,6 +4,8 @@ mod cat;
 mod diff;
 #[cfg(feature = "build")]
 mod edit;
+#[cfg(feature = "build")]
+mod export;
 mod find;
 mod listing;
 mod ls;
@@ -23,7 +25,8 @@ use htex_format::library::{Library, LibraryFile};
 pub(super) use verify::check;
 
 use super::subcommands;
-use crate::failure::{Result, for_file};
+use crate::failure::{Failure, Result, for_file};
+use crate::output::shown;
 
 /// Pack, change, list, verify and unpack libraries
 ///
@@ -45,6 +48,8 @@ subcommands! {
         Edit(edit::Edit),
         #[cfg(feature = "build")]
         Merge(merge::Merge),
+        #[cfg(feature = "build")]
+        Export(export::ExportAll),
         Unpack(unpack::Unpack),
         Ls(ls::Ls),
         Find(find::Find),
@@ -58,6 +63,18 @@ impl Lib {
     pub(crate) fn run(self) -> Result {
         self.command.run()
     }
+}
+
+/// Refuses to write a file that exists, unless `force` is given and the file is a regular one.
+fn check_free(path: &Path, force: bool) -> Result<()> {
+    let problem = match path.symlink_metadata() {
+        Err(_) => return Ok(()),
+        // A link is no regular file here, so nothing is written through it.
+        Ok(is) if force && is.is_file() => return Ok(()),
+        Ok(_) if force => "it is there and no regular file; remove it, or give another folder",
+        Ok(_) => "it is there already; give another folder, or write over it with --force",
+    };
+    Err(Failure::Other(format!("{}: {problem}", shown(path))))
 }
 
 /// An argument that names a library: a path or a URI. Of a file at a URI, htex reads only the

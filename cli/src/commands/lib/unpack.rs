@@ -4,7 +4,7 @@ use clap::Args;
 use htex_base::files::{AtFile, Batch, OwnFolder};
 use htex_format::library::{Entry, LibraryError, Names};
 
-use super::LibraryArg;
+use super::{LibraryArg, check_free};
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::output::{bar, print, shown};
 
@@ -98,22 +98,7 @@ impl Unpack {
     fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<()> {
         let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
         let path = self.output.join(&inside);
-        match path.symlink_metadata() {
-            Err(_) => {}
-            // A link is no regular file here, so nothing is written through it.
-            Ok(is) if self.force && is.is_file() => {}
-            Ok(_) if self.force => {
-                let problem =
-                    "it is there and no regular file; remove it, or unpack into another folder";
-                return Err(Failure::Other(format!("{}: {problem}", shown(&path))));
-            }
-            Ok(_) => {
-                let path = shown(&path);
-                return Err(Failure::Other(format!(
-                    "{path}: it is there already; unpack into another folder, or write over it with --force"
-                )));
-            }
-        }
+        check_free(&path, self.force)?;
         Ok(own.write_with(batch, &inside, bytes).writing(&path)?)
     }
 }

@@ -80,8 +80,8 @@ impl Filter {
         Ok(true)
     }
 
-    /// Returns whether a texture matches.
-    pub(crate) fn matches_manifest(&self, name: &str, manifest: &Manifest) -> bool {
+    /// Returns whether a texture with this name and this manifest matches.
+    pub fn matches_manifest(&self, name: &str, manifest: &Manifest) -> bool {
         let stated =
             |text: &Option<String>| self.pattern.matches_text(text.as_deref().unwrap_or(""));
         match self.field {

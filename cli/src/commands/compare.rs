@@ -21,7 +21,7 @@ use crate::output::{note, show, shown, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
 
-/// Compare an asset with a recording or another asset
+/// Compare assets and recordings
 ///
 /// Measures the difference between a recording and each model of an asset, or between two
 /// recordings. Of two assets, the command prints which metadata, conditions and models differ, and

@@ -28,7 +28,7 @@ use super::subcommands;
 use crate::failure::{Failure, Result, for_file};
 use crate::output::shown;
 
-/// Pack, change, list, verify and unpack libraries
+/// Pack, change, list and verify libraries
 ///
 /// A library is one file (.htexlib) that contains any number of textures. Data that several
 /// textures have in common is stored once.

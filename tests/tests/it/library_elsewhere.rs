@@ -1,6 +1,9 @@
 //! Libraries on an S3-compatible server, which counts the requests.
 
+use std::sync::LazyLock;
+
 use htex_base::storage::{Location, Settings, Storage};
+use htex_format::Asset;
 use htex_format::library::{Library, LibraryError, LibraryFile, Writer};
 use htex_object_server::{Fault, Server};
 
@@ -9,22 +12,29 @@ const URI: &str = "s3://textures/many.htexlib";
 /// Largest number of bytes read apart from the texture.
 const MOST_BYTES: u64 = 64 << 10;
 
-/// A server with a library of `count` textures with the same bytes.
-fn server(count: u32) -> (Server, Vec<u8>) {
-    let (folder, bytes) = (tempfile::tempdir().unwrap(), texture());
+/// A server with a library of `count` textures.
+fn server(count: u32) -> Server {
+    let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("many.htexlib");
     let mut writer = Writer::create(&path, "Many").unwrap();
     for i in 0..count {
-        writer.add(&name(i), &bytes).unwrap();
+        writer.add(&name(i), &texture(i)).unwrap();
     }
     writer.finish().unwrap();
     let server = Server::start();
     server.put(NAME, std::fs::read(&path).unwrap());
-    (server, bytes)
+    server
 }
 
-fn texture() -> Vec<u8> {
-    std::fs::read(htex_tests::workspace().join("examples/scenes/vinyl.htex")).unwrap()
+/// The bytes of a texture, which are those of no other.
+fn texture(i: u32) -> Vec<u8> {
+    static VINYL: LazyLock<Asset> = LazyLock::new(|| {
+        let path = htex_tests::workspace().join("examples/scenes/vinyl.htex");
+        Asset::open(&path).unwrap()
+    });
+    let mut asset = VINYL.clone();
+    asset.manifest.name = name(i);
+    asset.to_bytes().unwrap()
 }
 
 fn name(i: u32) -> String {
@@ -43,11 +53,12 @@ fn open(server: &Server) -> Result<Library<LibraryFile>, LibraryError> {
 #[test]
 fn one_texture_takes_three_requests_whatever_the_size() {
     for count in [1_000, 100_000] {
-        let (server, bytes) = server(count);
+        let server = server(count);
         for i in [0, count / 3, count - 1] {
             let before = server.requests().len();
             let library = open(&server).unwrap();
             assert_eq!(library.len(), u64::from(count));
+            let bytes = texture(i);
             assert_eq!(library.get(&name(i)).unwrap(), bytes);
             let requests = server.requests().split_off(before);
             assert!(requests.len() <= 3, "{count}: {requests:?}");
@@ -69,9 +80,9 @@ fn length(range: Option<&str>) -> u64 {
 /// A library that is replaced between two reads is not read as a mixture.
 #[test]
 fn a_replaced_library_and_a_failing_server_are_errors() {
-    let (server, bytes) = server(1_000);
+    let server = server(1_000);
     let library = open(&server).unwrap();
-    assert_eq!(library.get(&name(7)).unwrap(), bytes);
+    assert_eq!(library.get(&name(7)).unwrap(), texture(7));
     server.put(NAME, vec![7; 3_000_000]);
     let error = library.get(&name(999)).unwrap_err().to_string();
     assert!(error.contains("replaced"), "{error}");

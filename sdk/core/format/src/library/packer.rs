@@ -166,17 +166,18 @@ impl<S: Store> Packer<S> {
                 continue;
             }
             let shared = library.index().asset_ranges(&entry).into_iter().skip(1);
+            let is_part = entry.place.own.is_empty();
             let mut objects = Vec::with_capacity(entry.place.cuts.len());
             for (cut, range) in entry.place.cuts.iter().zip(shared) {
                 let object = match known_objects.get(&range) {
                     Some(object) => {
-                        self.objects.all[*object as usize].uses += 1;
+                        self.objects.use_again(*object, is_part);
                         *object
                     }
                     None => {
                         let bytes = library.read_range(range.clone())?;
                         let piece = || Ok::<_, LibraryError>(Piece { store, range: range.clone() });
-                        let object = self.objects.add(&bytes, piece)?;
+                        let object = self.objects.add(&bytes, is_part, piece)?;
                         // From a library, it can be read before the spool is complete.
                         self.objects.all[object as usize].piece = piece()?;
                         known_objects.insert(range, object);
@@ -236,7 +237,9 @@ impl<S: Store> Packer<S> {
         let ranges = modules(asset);
         let found: Vec<u32> = ranges
             .iter()
-            .map(|range| objects.add(&asset[range.clone()], || spool.add(&asset[range.clone()])))
+            .map(|range| {
+                objects.add(&asset[range.clone()], false, || spool.add(&asset[range.clone()]))
+            })
             .collect::<io::Result<_>>()?;
         let start = spool.end();
         let (mut at, mut cuts) = (0, Vec::with_capacity(ranges.len()));
@@ -269,10 +272,12 @@ impl<S: Store> Packer<S> {
         let ends = modules.iter().flat_map(|range| [range.start, range.end]);
         let ends: Vec<usize> = ends.chain([asset.len()]).collect();
         let starts = std::iter::once(0).chain(ends.iter().copied());
-        let parts: Vec<_> = starts
+        // Parts and modules alternate.
+        let parts: Vec<(&[u8], bool)> = starts
             .zip(&ends)
-            .map(|(start, end)| &asset[start..*end])
-            .filter(|part| !matches!(part, []))
+            .enumerate()
+            .map(|(i, (start, end))| (&asset[start..*end], i % 2 == 0))
+            .filter(|(bytes, _)| !matches!(bytes, []))
             .collect();
         if parts.len() > MOST_CUTS {
             self.objects.count(&pieces, true);
@@ -280,8 +285,10 @@ impl<S: Store> Packer<S> {
         }
         self.objects.count(&pieces, false);
         let Self { spool, objects, path, .. } = self;
-        let parts: Result<Vec<_>, _> =
-            parts.into_iter().map(|part| Ok((0, objects.add(part, || spool.add(part))?))).collect();
+        let parts = parts.into_iter().map(|(bytes, is_part)| {
+            objects.add(bytes, is_part, || spool.add(bytes)).map(|object| (0, object))
+        });
+        let parts: io::Result<Vec<_>> = parts.collect();
         let objects = parts.map_err(LibraryError::unchanged(path))?.into();
         let own = Piece { store: 0, range: 0..0 };
         let pieces = Pieces { own, objects };
@@ -365,10 +372,16 @@ impl<S: Store> Packer<S> {
         self.find_modules()?;
         let Self { path, name, spool, libraries, objects, textures, added, .. } = self;
         let mut spool = spool.finish().map_err(LibraryError::unchanged(&path))?;
-        let sharing = Sharing::new(objects.all);
+        let mut sharing = Sharing::new(objects.all, true);
         let textures: Vec<(&String, &PendingTexture)> =
             added.iter().map(|(name, texture)| (name, &textures[*texture as usize])).collect();
-        let (header, index, total) = index(&name, &textures, &sharing);
+        let (mut header, mut index, total) = indexed(&name, &textures, &sharing);
+        // Readers refuse a small file that unpacks to a huge folder. Then equal textures are stored
+        // several times.
+        if is_beyond_ratio(&header, total) {
+            sharing = sharing.without_parts();
+            (header, index, _) = indexed(&name, &textures, &sharing);
+        }
         check_limits(&name, &header, total)?;
         let libraries = libraries.into_iter();
         let mut libraries: Vec<Box<dyn Source + Send>> = libraries.collect();
@@ -410,7 +423,7 @@ fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryEr
 }
 
 /// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
-fn index(
+fn indexed(
     name: &str,
     textures: &[(&String, &PendingTexture)],
     sharing: &Sharing,
@@ -456,6 +469,11 @@ fn index(
     (header, index, total)
 }
 
+/// Returns whether the textures have more bytes, relative to the file, than readers allow.
+fn is_beyond_ratio(header: &Header, total: u64) -> bool {
+    total > header.payload.end.saturating_mul(Limits::default().ratio)
+}
+
 /// Checks the limits of readers, so that every library that is written can be read within the
 /// default limits.
 fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryError> {
@@ -472,7 +490,7 @@ fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryEr
             length(&header.root),
             limits.root_bytes
         )
-    } else if total > header.payload.end.saturating_mul(limits.ratio) {
+    } else if is_beyond_ratio(header, total) {
         let ratio = limits.ratio;
         format!(
             "its textures have {total} bytes, over {ratio} times the bytes of the file, and readers refuse that; split it"

@@ -38,6 +38,8 @@ pub(crate) struct Object {
     pub piece: Piece,
     /// Number of times that textures contain the object.
     pub uses: u64,
+    /// Whether the object is part of equal textures only. A module is no such part.
+    pub is_part: bool,
 }
 
 /// All objects, each only once.
@@ -53,17 +55,25 @@ impl Objects {
     pub(crate) fn add<E>(
         &mut self,
         bytes: &[u8],
+        is_part: bool,
         piece: impl FnOnce() -> Result<Piece, E>,
     ) -> Result<u32, E> {
         let blake3 = *blake3::hash(bytes).as_bytes();
-        if let Some(index) = self.by_hash.get(&blake3) {
-            self.all[*index as usize].uses += 1;
-            return Ok(*index);
+        if let Some(index) = self.by_hash.get(&blake3).copied() {
+            self.use_again(index, is_part);
+            return Ok(index);
         }
         let index = self.all.len() as u32;
-        self.all.push(Object { blake3, piece: piece()?, uses: 1 });
+        self.all.push(Object { blake3, piece: piece()?, uses: 1, is_part });
         self.by_hash.insert(blake3, index);
         Ok(index)
+    }
+
+    /// Counts one more use of an object.
+    pub(crate) fn use_again(&mut self, object: u32, is_part: bool) {
+        let object = &mut self.all[object as usize];
+        object.uses += 1;
+        object.is_part &= is_part;
     }
 
     /// Counts one more use of each object of a texture, or one less.

@@ -22,9 +22,12 @@ pub(crate) struct Sharing {
 
 impl Sharing {
     /// Decides which objects are shared. They are sorted by their hashes, so that the file does not
-    /// depend on the order in which textures were added.
-    pub(crate) fn new(objects: Vec<Object>) -> Self {
-        let mut shared: Vec<usize> = (0..objects.len()).filter(|i| objects[*i].uses > 1).collect();
+    /// depend on the order in which textures were added. If `has_parts` is false, equal textures
+    /// share only their modules.
+    pub(crate) fn new(objects: Vec<Object>, has_parts: bool) -> Self {
+        let is_shared = |object: &Object| object.uses > 1 && (has_parts || !object.is_part);
+        let mut shared: Vec<usize> =
+            (0..objects.len()).filter(|i| is_shared(&objects[*i])).collect();
         shared.sort_by_key(|i| objects[*i].blake3);
         let (mut places, mut bytes) = (vec![None; objects.len()], 0);
         for i in &shared {
@@ -33,6 +36,11 @@ impl Sharing {
             bytes = end;
         }
         Self { objects, places, shared, bytes }
+    }
+
+    /// Decides again, with equal textures that share only their modules.
+    pub(crate) fn without_parts(self) -> Self {
+        Self::new(self.objects, false)
     }
 
     /// Returns the size of the shared part, bytes.

@@ -222,6 +222,22 @@ fn equal_textures_are_stored_once() {
     assert!(stored <= (plain.len() + first.len() + second.len() - 300) as u64, "{stored}");
 }
 
+/// So many names that readers would refuse the small file: then each has bytes of its own.
+#[test]
+fn very_many_names_of_one_texture_can_be_read() {
+    let mut large = texture("felt");
+    large.modules = vec![module(1, 100_000)];
+    large.tags = (0..60).map(|i| format!("{i} {}", "tag ".repeat(50))).collect();
+    let bytes = large.bytes();
+    let textures: BTreeMap<_, _> = (0..2000).map(|i| (format!("{i:04}"), bytes.clone())).collect();
+    let (packed, file) = pack_bytes("Names", &textures);
+    assert_eq!(packed.shared_objects, 1);
+    let library = Library::open_source(file.as_slice()).unwrap();
+    assert_eq!(library.get("1999").unwrap(), bytes);
+    let mut ratio = library.ratio();
+    library.entries().for_each(|entry| ratio.add(&entry.unwrap()).unwrap());
+}
+
 /// A change of a library.
 #[derive(Debug, Clone)]
 enum Change {

@@ -64,15 +64,17 @@ impl Asset {
     }
 }
 
-/// Splits the path of a texture in a library. Programs for the web read no files.
+/// Splits the path of a texture in a library.
+#[cfg(all(feature = "library", not(target_family = "wasm")))]
 fn in_library(path: &Path) -> Option<(&Path, &str)> {
-    #[cfg(all(feature = "library", not(target_family = "wasm")))]
-    return path
-        .to_str()
-        .and_then(crate::library::split_address)
-        .map(|(library, name)| (library.as_ref(), name));
-    #[cfg(not(all(feature = "library", not(target_family = "wasm"))))]
-    return None;
+    let (library, name) = path.to_str().and_then(crate::library::split_address)?;
+    Some((library.as_ref(), name))
+}
+
+/// Programs for the web read no files, and others may have no reader of libraries.
+#[cfg(not(all(feature = "library", not(target_family = "wasm"))))]
+fn in_library(_: &Path) -> Option<(&Path, &str)> {
+    None
 }
 
 /// Reads a file, but at most one byte more than the limit.

@@ -49,6 +49,8 @@ mod facts;
 mod fault;
 mod header;
 mod index;
+#[cfg(feature = "write")]
+mod layout;
 mod leaf;
 mod limits;
 #[cfg(feature = "storage")]

@@ -1,0 +1,128 @@
+//! Lays a library out: encodes its index, and copies the pieces of its textures into place.
+
+use std::io::{self, Write};
+
+use crate::library::encode::Pages;
+use crate::library::entry::Entry;
+use crate::library::error::LibraryError;
+use crate::library::header::{HEADER_BYTES, Header, MINOR};
+use crate::library::leaf::length;
+use crate::library::limits::Limits;
+use crate::library::packer::PendingTexture;
+use crate::library::pieces::{Piece, Source};
+use crate::library::sharing::Sharing;
+
+/// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
+pub(crate) fn indexed(
+    name: &str,
+    textures: &[(&String, &PendingTexture)],
+    sharing: &Sharing,
+) -> (Header, Vec<u8>, u64) {
+    let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
+    // Own bytes of the textures follow each other in the order of names. `write` copies them in the
+    // same order.
+    for (name, texture) in textures {
+        let place = sharing.place(&texture.pieces, payload);
+        payload = place.own.end;
+        total += texture.bytes;
+        pages.add(Entry {
+            name: (*name).clone(),
+            tags: texture.words.tags.clone(),
+            models: texture.words.models.clone(),
+            conditions: texture.conditions,
+            contact: texture.contact,
+            law: texture.law,
+            bytes: texture.bytes,
+            blake3: texture.blake3,
+            place,
+        });
+    }
+    let (root, leaves, leaf_count) = pages.finish(name);
+    // The parts follow each other without gaps, so each begins where the one before ends.
+    let mut end = HEADER_BYTES as u64;
+    let mut part = |bytes: u64| {
+        let start = end;
+        end += bytes;
+        start..end
+    };
+    let index = [root.as_slice(), &leaves].concat();
+    let header = Header {
+        minor: MINOR,
+        root: part(root.len() as u64),
+        leaves: part(leaves.len() as u64),
+        shared: part(sharing.bytes()),
+        payload: part(payload),
+        entries: textures.len() as u64,
+        leaf_count,
+        index_blake3: *blake3::hash(&index).as_bytes(),
+    };
+    (header, index, total)
+}
+
+/// Returns whether the textures have more bytes, relative to the file, than readers allow.
+pub(crate) fn is_beyond_ratio(header: &Header, total: u64) -> bool {
+    total > header.payload.end.saturating_mul(Limits::default().ratio)
+}
+
+/// Checks the limits of readers, so that every library that is written can be read within the
+/// default limits.
+pub(crate) fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryError> {
+    let limits = Limits::default();
+    let problem = if header.entries > limits.entries || u64::from(header.leaf_count) > limits.leaves
+    {
+        format!(
+            "it has {} textures and readers' limit is {}; split it",
+            header.entries, limits.entries
+        )
+    } else if length(&header.root) > limits.root_bytes {
+        format!(
+            "its root page has {} bytes and readers' limit is {}; split it or shorten names",
+            length(&header.root),
+            limits.root_bytes
+        )
+    } else if is_beyond_ratio(header, total) {
+        let ratio = limits.ratio;
+        format!(
+            "its textures have {total} bytes, over {ratio} times the bytes of the file, and readers refuse that; split it"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(LibraryError::Limit { name: format!("library {name:?}"), problem })
+}
+
+pub(crate) fn write(
+    target: &mut impl Write,
+    header: &Header,
+    index: &[u8],
+    stores: &mut [&mut dyn Source],
+    sharing: &Sharing,
+    textures: &[(&String, &PendingTexture)],
+) -> io::Result<()> {
+    target.write_all(&header.to_bytes())?;
+    target.write_all(index)?;
+    // `sharing` assigned the places of the objects in this order, and `index` the places of the
+    // textures.
+    let own = textures.iter().flat_map(|(_, texture)| sharing.own_pieces(&texture.pieces));
+    let mut pieces = sharing.shared().cloned().chain(own);
+    // Pieces that follow each other in their store, as most of another library do, are copied at
+    // once.
+    let mut run = Piece { store: 0, range: 0..0 };
+    loop {
+        let next = pieces.next();
+        if let Some(Piece { store, range }) = &next
+            && *store == run.store
+            && range.start == run.range.end
+        {
+            run.range.end = range.end;
+            continue;
+        }
+        if let (false, Some(store)) = (run.range.is_empty(), stores.get_mut(run.store as usize)) {
+            store.copy(run.range, target)?;
+        }
+        match next {
+            Some(next) => run = next,
+            None => return target.flush(),
+        }
+    }
+}

@@ -111,6 +111,9 @@ fn filters_choose_what_is_removed_and_edited() {
     assert_eq!(edited(&["--set", "author=Ben", "--where", "tag=hard"]), 0);
     assert_eq!(edited(&["--add-tag", "x", "--where", "author=B*", "--where", "name=wood/e*"]), 1);
     assert_eq!(edited(&["--add-tag", "y", "--where", "license=CC-*", "--where", "model=sbeta"]), 4);
+    assert_eq!(edited(&["--set", "law=level-speed=0.4", "--where", "name=linen"]), 1);
+    let law = &manifest(&place, "all.htexlib#linen")["law"]["level_speed"];
+    assert_eq!([&law["exponent"], &law["source"]], [&Value::from(0.4), &Value::from("given")]);
     assert_eq!(edited(&["--add-tag", "z", "--where", "quantity=acceleration"]), 0);
     let before = names(&place, "all.htexlib");
     assert_eq!(edit(&["--remove", "**", "--where", "author=Ben"])["removed"], 2);
@@ -137,6 +140,7 @@ fn a_wrong_edit_changes_nothing() {
         (&["--rename", "linen=wood/oak"], "two textures have the name wood/oak"),
         (&["--rename", "linen=WOOD/OAK"], "differ only in case"),
         (&["--rename", "linen"], "OLD=NEW"),
+        (&["--rename", "linen=a", "--rename", "linen=b"], "linen would get two names"),
         (&["--add", "textures/linen.htex"], "two textures have the name linen"),
         (&["--add", "none.htex"], "none.htex"),
         (

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::settings::Metadata;
-use htex_build::{Addition, EditSummary, Filter, LibraryEdit};
+use htex_build::{Addition, EditSummary, Filter, LibraryEdit, metadata_value};
 use htex_format::library::NamePattern;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -173,10 +173,7 @@ fn metadata(given: &[String]) -> Result<Metadata> {
             let names = Metadata::NAMES.join(", ");
             return Err(wrong(format!("there is no field {name}; there are {names}")));
         }
-        let value = match name {
-            "tags" => value.split(',').map(Value::from).collect(),
-            _ => Value::from(value),
-        };
+        let value = metadata_value(name, value).map_err(wrong)?;
         values.insert(name.to_owned(), value);
     }
     serde_json::from_value(Value::Object(values))

@@ -81,6 +81,7 @@ pub use job_result::{JobResult, Outcome, Record};
 pub use library_build::{Build, BuildOptions, check, hash_file, remember, unhashed};
 pub use library_edit::{Addition, EditSummary, LibraryEdit};
 pub use library_merge::{LibraryMerge, OnConflict};
+pub use metadata_table::metadata_value;
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
 pub use reasons::Why;

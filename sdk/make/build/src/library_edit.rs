@@ -109,6 +109,12 @@ impl LibraryEdit {
         let table = table.unwrap_or_default();
         let renames: BTreeMap<&str, &str> =
             self.rename.iter().map(|(old, new)| (old.as_str(), new.as_str())).collect();
+        let mut olds: Vec<&String> = self.rename.iter().map(|(old, _)| old).collect();
+        olds.sort_unstable();
+        if let Some([old, _]) = olds.windows(2).find(|pair| pair[0] == pair[1]) {
+            let problem = format!("{old} would get two names; give one");
+            return Err(BuildError::at_place(library.display(), problem));
+        }
         let name = opened.name().to_owned();
         let mut writer = Writer::create(output, &name).map_err(of_output)?;
         if self.allows_unlicensed {

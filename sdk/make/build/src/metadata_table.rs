@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use htex_author::settings::Metadata;
+use htex_author::settings::{GivenLaw, Metadata};
 use htex_base::files::{AtFile, read_regular};
 use serde_json::{Map, Value};
 
@@ -48,8 +48,10 @@ impl MetadataTable {
                 .iter()
                 .zip(&row)
                 .filter(|(name, cell)| *name != TEXTURE && !cell.is_empty());
-            let values: Map<String, Value> =
-                cells.map(|(name, cell)| (name.to_owned(), value(name, cell))).collect();
+            let values: Map<String, Value> = cells
+                .map(|(name, cell)| Ok((name.to_owned(), metadata_value(name, cell)?)))
+                .collect::<Result<_, String>>()
+                .map_err(at_place(&place))?;
             let metadata: Metadata =
                 serde_json::from_value(Value::Object(values)).map_err(at_place(&place))?;
             metadata.check().map_err(at_place(&place))?;
@@ -73,9 +75,17 @@ impl MetadataTable {
     }
 }
 
-fn value(name: &str, cell: &str) -> Value {
+/// Reads the text of an entry of the metadata. Several tags are separated by `;` or `,`.
+///
+/// # Errors
+/// When the text of a law is malformed.
+pub fn metadata_value(name: &str, text: &str) -> Result<Value, String> {
     match name {
-        "tags" => cell.split(';').map(|tag| Value::from(tag.trim())).collect(),
-        _ => Value::from(cell),
+        "tags" => Ok(text.split([';', ',']).map(|tag| Value::from(tag.trim())).collect()),
+        "law" => {
+            let law: GivenLaw = text.parse()?;
+            serde_json::to_value(law).map_err(|error| error.to_string())
+        }
+        _ => Ok(Value::from(text)),
     }
 }

@@ -44,12 +44,9 @@ pub(crate) struct Lib {
 subcommands! {
     Command {
         Pack(pack::Pack),
-        #[cfg(feature = "build")]
-        Edit(edit::Edit),
-        #[cfg(feature = "build")]
-        Merge(merge::Merge),
-        #[cfg(feature = "build")]
-        Export(export::ExportAll),
+        Edit(edit::Edit) if feature = "build",
+        Merge(merge::Merge) if feature = "build",
+        Export(export::ExportAll) if feature = "build",
         Unpack(unpack::Unpack),
         Ls(ls::Ls),
         Find(find::Find),

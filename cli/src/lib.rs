@@ -30,6 +30,7 @@ mod report;
 mod scene_sound;
 mod scenes;
 mod schemas;
+mod shared;
 mod signals;
 mod wasm_limits;
 mod wav;

@@ -15,7 +15,7 @@ use crate::output::{note, shown};
 use htex_lab::record::KnownTake;
 
 /// Options for reading recordings.
-#[derive(Args)]
+#[derive(Args, Default)]
 #[command(
     next_help_heading = "Reading recordings",
     mut_arg("response", |arg| arg.value_parser(located::RECORDING))

@@ -65,21 +65,59 @@ def read(file):
     root, leaves, shared, payload = (file[at : at + length] for at, length in parts)
     if blake3:
         assert blake3(root + leaves).digest() == file[92:124]
+    minor = struct.unpack_from("<H", file, 10)[0]
     root = Page(root)
     name, count = root.text(), root.varint()
     separators = root.following(count)
     entries, at = [], 0
     for i in range(count):
         length = root.varint()
-        rows = leaf(Page(leaves[at : at + length]), shared, payload)
+        rows = leaf(Page(leaves[at : at + length]), shared, payload, minor)
         at += length
         assert all(separators[i] <= row["name"].encode() for row in rows)
+        for row in rows:
+            row["leaf"] = i
         entries += rows
     assert len(entries) == struct.unpack_from("<Q", file, 80)[0]
-    return {"name": name, "entries": entries}
+    metadata, spectra = {}, []
+    if minor >= 1:
+        known = ("version", "description", "authors", "homepage", "source", "changelog", "date")
+        given = json.loads(root.take(root.varint()))
+        metadata = {key: given[key] for key in known if key in given}
+        lengths = [root.varint() for _ in range(count)]
+        pages = shared[len(shared) - sum(lengths) :]
+        assert not blake3 or blake3(pages).digest() == root.take(32)
+        at = 0
+        for length, rows in zip(lengths, leaf_sizes(entries)):
+            spectra += read_spectra(Page(pages[at : at + length])) if length else [None] * rows
+            at += length
+    spectra += [None] * (len(entries) - len(spectra))
+    for entry in entries:
+        del entry["leaf"]
+    return {"name": name, "metadata": metadata, "entries": entries, "spectra": spectra}
 
 
-def leaf(page, shared, payload):
+def leaf_sizes(entries):
+    """The number of entries of each leaf."""
+    sizes = {}
+    for entry in entries:
+        sizes[entry["leaf"]] = sizes.get(entry["leaf"], 0) + 1
+    return list(sizes.values())
+
+
+def read_spectra(page):
+    known = page.take(page.varint())
+    spectra = []
+    for is_known in known:
+        if not is_known:
+            spectra.append(None)
+            continue
+        (largest,) = struct.unpack("<f", page.take(4))
+        spectra.append([largest - 40 * (1 - byte / 255) for byte in page.take(48)])
+    return spectra
+
+
+def leaf(page, shared, payload, minor):
     count = page.varint()
     words = [page.text() for _ in range(page.varint())]
     names = page.following(count)
@@ -118,6 +156,20 @@ def leaf(page, shared, payload):
         digest = page.take(32)
         assert not blake3 or blake3(texture).digest() == digest
         row["bytes"], row["blake3"] = len(texture), digest.hex()
+    if minor >= 1:
+        rights = [page.text() for _ in range(page.varint())]
+        for key in ("license", "author"):
+            for row in rows:
+                choice = page.varint()
+                if choice:
+                    row[key] = rights[choice - 1]
+        quantities = ("lateral_force", "normal_force", "acceleration", "velocity", "displacement")
+        for row in rows:
+            row["quantity"] = quantities[page.take(1)[0]]
+        for row in rows:
+            felt = page.varint()
+            if felt:
+                row["felt_error_rms_db"] = (felt - 1) / 100
     return rows
 
 

@@ -7,6 +7,7 @@ use htex_lab::page::ServedFolder;
 
 use crate::failure::{Exit, Failure, Result};
 use crate::output::{print, warn};
+use crate::shared;
 use crate::signals;
 
 /// The port of the page, unless another one is given. It is fixed, so that the browser finds the
@@ -14,10 +15,6 @@ use crate::signals;
 const PORT: u16 = 8420;
 /// How often to check whether the command should end.
 const NOTICED: Duration = Duration::from_millis(100);
-/// The environment variable that names the folder.
-const VARIABLE: &str = "HTEX_STUDIO";
-/// Where an installation keeps the page, relative to the folder of the command.
-const SHARED: &str = "../share/htex/studio";
 /// The part of a build that a server serves.
 const STATIC: &str = "static";
 /// Name of the key file in the user's configuration folder.
@@ -47,7 +44,7 @@ pub(crate) struct Studio {
 
 impl Studio {
     pub(crate) fn run(self) -> Result {
-        let folder = self.page()?;
+        let folder = shared::page(self.folder.as_deref(), "the studio's page", page_in)?;
         let served = ServedFolder::open(&folder, self.port, &key()?)
             .map_err(|error| Failure::Other(error.to_string()))?;
         print(&format!("the studio is at {}; Ctrl-C ends it\n", served.url()))?;
@@ -56,23 +53,6 @@ impl Studio {
             std::thread::sleep(NOTICED);
         }
         Ok(Exit::SUCCESS)
-    }
-
-    /// Returns the folder that contains the page.
-    fn page(&self) -> Result<PathBuf> {
-        let given = self.folder.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
-        let looked = match given {
-            Some(folder) => vec![folder],
-            None => shared().into_iter().collect(),
-        };
-        let page = looked.iter().find_map(|folder| page_in(folder));
-        page.ok_or_else(|| {
-            let places: Vec<String> = looked.iter().map(|p| p.display().to_string()).collect();
-            Failure::Other(format!(
-                "the studio's page is not in {}; build it by `cargo xtask studio --out DIR`, and give --folder DIR or set {VARIABLE}=DIR",
-                places.join(" or ")
-            ))
-        })
     }
 }
 
@@ -85,12 +65,6 @@ fn key() -> Result<Key> {
     }
     warn(&["there is no folder of settings that only you can write to; the next time the studio has another address, at which the browser does not find textures that you stored".to_owned()]);
     Key::passing().map_err(|error| Failure::Other(format!("there are no random numbers: {error}")))
-}
-
-/// Returns the folder in which an installation keeps the page.
-fn shared() -> Option<PathBuf> {
-    let command = std::env::current_exe().ok()?;
-    Some(command.parent()?.join(SHARED))
 }
 
 /// Returns the folder that contains `index.html`: the subfolder [`STATIC`] of this folder, or else

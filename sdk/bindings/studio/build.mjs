@@ -1,4 +1,5 @@
-// Builds the page twice: `static/`, for web servers and offline, and `studio.html`, one file for a double click.
+// Builds the page twice: `static/`, for web servers and offline, and `studio.html`, one file for a double click. Builds
+// `catalogue.html` besides, of which `htex lib catalogue` makes the catalogue of a library.
 //
 //   node build.mjs OUT
 //
@@ -10,7 +11,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "vite";
 
-import { digest, policy, withPolicy } from "./parts.mjs";
+import { cataloguePage, digest, policy, withPolicy } from "./parts.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const out = path.resolve(process.argv[2] ?? path.join(here, "dist"));
@@ -103,3 +104,5 @@ async function buildSingle() {
 await mkdir(out, { recursive: true });
 await buildStatic();
 await buildSingle();
+const player = await readFile(path.join(here, ".htex", "htex.wasm.gz"), "base64");
+await writeFile(path.join(out, "catalogue.html"), (await cataloguePage()).replace("__LIBRARY__", () => player));

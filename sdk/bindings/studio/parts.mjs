@@ -44,13 +44,19 @@ export async function script(entry, plugins = []) {
 
 export const dataAddress = (text) => `data:text/javascript;base64,${Buffer.from(text).toString("base64")}`;
 
-/** The page of a player with places for its name, options, library and texture. */
-export async function playerPage() {
-  const { code, css } = await script("src/player/player.tsx");
+/** A page of one file, of which a program fills in places. Its script and its style sheet stand in it. */
+async function filledPage(entry, page, more) {
+  const { code, css } = await script(entry);
   const [inner, style] = [`\n${code.replaceAll("</script", "<\\/script")}\n`, `\n${css}\n`];
-  const html = await readFile(path.join(here, "src/player/player.html"), "utf8");
+  const html = await readFile(path.join(here, page), "utf8");
   const filled = html
     .replace(/<script type="module"[^>]*><\/script>/, () => `<script type="module">${inner}</script>`)
     .replace("</head>", () => `  <style>${style}</style>\n  </head>`);
-  return withPolicy(filled, policy({ "script-src": `${digest(inner)} data: 'wasm-unsafe-eval'`, "style-src": digest(style), "worker-src": "data:" }));
+  return withPolicy(filled, policy({ "script-src": `${digest(inner)} data: 'wasm-unsafe-eval'`, "style-src": digest(style), "worker-src": "data:", ...more }));
 }
+
+/** The page of a player with places for its name, options, library and texture. */
+export const playerPage = () => filledPage("src/player/player.tsx", "src/player/player.html", {});
+
+/** The page of a catalogue with places for its title, options and textures. */
+export const cataloguePage = () => filledPage("src/catalogue/catalogue.tsx", "src/catalogue/catalogue.html", { "connect-src": "'self'" });

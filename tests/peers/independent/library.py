@@ -14,7 +14,7 @@ from .asset import read_asset
 from .findings import Findings, Refused
 from .law import SOURCES, exponents
 from .models import Models
-from .pages import Entry, Root, most_in_file, name_is_allowed, one_file, read_leaf, read_root, unpack
+from .pages import MINOR, Entry, Root, most_in_file, name_is_allowed, one_file, read_leaf, read_root, read_spectra, start, unpack
 
 SIGNATURE = bytes.fromhex("8948544c0d0a1a0a")
 HEADER_BYTES = 128
@@ -34,7 +34,7 @@ class Header:
     entries: int
     leaf_count: int
     index_hash: bytes
-    newer: bool
+    minor: int
 
 
 def read_header(data: bytes, limits: dict[str, int], findings: Findings) -> Header:
@@ -46,7 +46,7 @@ def read_header(data: bytes, limits: dict[str, int], findings: Findings) -> Head
     major, minor = struct.unpack_from("<HH", data, 8)
     if major != 1:
         raise Refused("LIBRARY_VERSION_UNSUPPORTED", "/header")
-    newer = minor > 0
+    newer = minor > MINOR
     if newer:
         findings.add("LIBRARY_VERSION_NEWER", "/header")
     if zlib.crc32(data[:124]) != struct.unpack_from("<I", data, 124)[0]:
@@ -73,7 +73,7 @@ def read_header(data: bytes, limits: dict[str, int], findings: Findings) -> Head
         raise Refused("LIBRARY_HEADER_INVALID", "/header", "leaves and entries")
     if parts[0][1] > most_in_file(limits["root_bytes"]):
         raise Refused("LIBRARY_PAGE_TOO_LARGE", "/root")
-    return Header(*parts, entries, leaf_count, data[92:124], newer)
+    return Header(*parts, entries, leaf_count, data[92:124], minor)
 
 
 def read_library(data: bytes, models: Models, limits: dict[str, int] | None = None) -> Findings:
@@ -83,10 +83,13 @@ def read_library(data: bytes, models: Models, limits: dict[str, int] | None = No
         header = read_header(data, limits, findings)
         page = data[header.root[0] : sum(header.root)]
         contents = unpack(page, limits["root_bytes"], "/root")
-        root = read_root(contents, header.leaf_count, header.leaves[1], header.newer)
+        root = read_root(contents, header.leaf_count, header.leaves[1], header.shared[1], header.minor)
         for number, length in enumerate(root.lengths):
             if length > most_in_file(limits["leaf_bytes"]):
                 raise Refused("LIBRARY_PAGE_TOO_LARGE", f"/leaves/{number}")
+        for number, length in enumerate(root.spectra):
+            if length > most_in_file(limits["leaf_bytes"]):
+                raise Refused("LIBRARY_PAGE_TOO_LARGE", f"/spectra/{number}")
         Validator(data, header, root, models, limits, findings).run()
     except Refused as refused:
         findings.items.append(refused.finding)
@@ -105,6 +108,8 @@ class Validator:
         self.objects: list[tuple[int, int]] = []
         self.total = self.count = 0
         self.own_end: int | None = 0
+        self.sizes: list[int | None] = []
+        self.objects_length = header.shared[1] - sum(root.spectra)
 
     def run(self) -> None:
         at, complete = self.header.leaves[0], True
@@ -117,14 +122,16 @@ class Validator:
             except Refused as refused:
                 self.findings.items.append(refused.finding)
                 complete, self.own_end = False, None
+                self.sizes.append(None)
                 continue
+            self.sizes.append(len(entries))
             for index, entry in enumerate(entries):
                 self.entry(entry, f"{pointer}/entries/{index}")
         self.whole(complete)
 
     def leaf(self, page: bytes, number: int, pointer: str) -> list[Entry]:
         """Stage 3."""
-        entries = read_leaf(unpack(page, self.limits["leaf_bytes"], pointer), pointer, self.header.newer)
+        entries = read_leaf(unpack(page, self.limits["leaf_bytes"], pointer), pointer, self.header.minor)
         before = None
         separators = self.root.separators
         for index, entry in enumerate(entries):
@@ -144,7 +151,7 @@ class Validator:
             raise Refused("LIBRARY_RANGE_INVALID", pointer)
         if sum(item.gap for item in entry.objects) > entry.length:
             raise Refused("LIBRARY_RANGE_INVALID", pointer)
-        if any(item.start + item.length > self.header.shared[1] for item in entry.objects):
+        if any(item.start + item.length > self.objects_length for item in entry.objects):
             raise Refused("LIBRARY_RANGE_INVALID", pointer)
         if entry.size > self.limits["asset_bytes"]:
             raise Refused("LIBRARY_ASSET_TOO_LARGE", pointer)
@@ -174,6 +181,8 @@ class Validator:
             return
         if stated(asset.manifest) != (entry.tags, entry.models, entry.conditions, entry.law):
             self.findings.add("LIBRARY_ENTRY_WRONG", pointer)
+        elif entry.rights not in (None, rights(asset.manifest)):
+            self.findings.add("LIBRARY_ENTRY_WRONG", pointer)
 
     def share(self, entry: Entry, pointer: str) -> None:
         for item in entry.objects:
@@ -201,19 +210,42 @@ class Validator:
             at += item.gap
         return b"".join([*parts, self.data[at:end]])
 
+    def spectra(self) -> None:
+        """The pages of spectra, in stage 5."""
+        at = start = self.header.shared[0] + self.objects_length
+        for number, length in enumerate(self.root.spectra):
+            pointer, page = f"/spectra/{number}", self.data[at : at + length]
+            at += length
+            if not length:
+                continue
+            try:
+                count = read_spectra(unpack(page, self.limits["leaf_bytes"], pointer), pointer)
+                if self.sizes[number] not in (None, count):
+                    self.findings.add("LIBRARY_COUNT_WRONG", pointer)
+            except Refused as refused:
+                self.findings.items.append(refused.finding)
+        if self.root.spectra_hash not in (None, blake3(self.data[start:at]).digest()):
+            self.findings.add("LIBRARY_INDEX_CHANGED", "/root")
+
     def whole(self, complete: bool) -> None:
         """Stage 5."""
         index = self.data[self.header.root[0] : sum(self.header.leaves)]
         if blake3(index).digest() != self.header.index_hash:
             self.findings.add("LIBRARY_INDEX_CHANGED", "/header")
+        self.spectra()
         if not complete:
             return
         if self.count != self.header.entries:
             self.findings.add("LIBRARY_COUNT_WRONG", "/header")
         if self.own_end != self.header.payload[1]:
             self.findings.add("LIBRARY_RANGE_INVALID", "/header", "the payload does not end with own bytes")
-        if sum(end - start for start, end in self.objects) != self.header.shared[1]:
+        if self.header.minor <= MINOR and sum(end - start for start, end in self.objects) != self.objects_length:
             self.findings.add("LIBRARY_OBJECT_UNUSED", "/header")
+
+
+def rights(manifest: dict) -> tuple:
+    """Licence, author and quantity, as an entry states them."""
+    return start(manifest.get("license")), start(manifest.get("author")), manifest["quantity"]
 
 
 def stated(manifest: dict) -> tuple:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import struct
 import unicodedata
 import zlib
 from dataclasses import dataclass, field
+from datetime import date
 
 from .findings import Refused
 
 MAX_TEXT, MAX_LIST, MAX_OBJECTS = 255, 64, 256
 MAX_PART = 250
+MAX_METADATA, MAX_FELT = 8192, 100_001
+MINOR = 1
+QUANTITIES = ("lateral_force", "normal_force", "acceleration", "velocity", "displacement")
 FORBIDDEN = set('\\:*?"<>|')
 INVISIBLE = [
     (0xAD, 0xAD), (0x61C, 0x61C), (0x180E, 0x180E), (0x200B, 0x200F), (0x2028, 0x202E), (0x2060, 0x206F), (0xFEFF, 0xFEFF),
@@ -39,6 +44,7 @@ class Entry:
     length: int = 0
     objects: list[Object] = field(default_factory=list)
     hash: bytes = b""
+    rights: tuple | None = None
 
     @property
     def size(self) -> int:
@@ -50,6 +56,8 @@ class Root:
     name: str
     separators: list[bytes]
     lengths: list[int]
+    spectra: list[int] = field(default_factory=list)
+    spectra_hash: bytes | None = None
 
 
 def most_in_file(limit: int) -> int:
@@ -149,7 +157,7 @@ class Cursor:
             self.fail("bytes after the last value")
 
 
-def read_root(contents: bytes, leaves: int, leaves_length: int, newer: bool) -> Root:
+def read_root(contents: bytes, leaves: int, leaves_length: int, shared_length: int, minor: int) -> Root:
     """Section 4."""
     cursor = Cursor(contents, "/root")
     name = cursor.text()
@@ -160,23 +168,76 @@ def read_root(contents: bytes, leaves: int, leaves_length: int, newer: bool) -> 
         raise Refused("LIBRARY_COUNT_WRONG", "/root", "another number of leaves than in the header")
     separators = cursor.following(count)
     lengths = [cursor.varint() for _ in range(count)]
-    cursor.end(newer)
     if separators and separators[0] or any(a >= b for a, b in zip(separators, separators[1:])):
         raise Refused("LIBRARY_ORDER_INVALID", "/root", "separators")
     if sum(lengths) != leaves_length:
         raise Refused("LIBRARY_HEADER_INVALID", "/root", "lengths")
-    return Root(name, separators, lengths)
+    root = Root(name, separators, lengths)
+    if minor >= 1:
+        length = cursor.varint()
+        if length > MAX_METADATA:
+            cursor.fail("the metadata are too long")
+        check_metadata(cursor.take(length))
+        root.spectra = [cursor.varint() for _ in range(count)]
+        if sum(root.spectra) > shared_length:
+            raise Refused("LIBRARY_HEADER_INVALID", "/root", "spectra")
+        root.spectra_hash = cursor.take(32)
+    cursor.end(minor > MINOR)
+    return root
 
 
-def read_leaf(contents: bytes, pointer: str, newer: bool) -> list[Entry]:
+def check_metadata(data: bytes) -> None:
+    """Section 4: what a library says about itself."""
+    try:
+        given = json.loads(data.decode("utf-8"), object_pairs_hook=no_key_twice)
+        assert isinstance(given, dict)
+        for key in ("version", "description", "homepage", "source", "changelog", "date"):
+            if key in given:
+                check_text(given[key], key in ("description", "changelog"))
+        authors = given.get("authors", [])
+        assert isinstance(authors, list)
+        for author in authors:
+            check_text(author, False)
+        if "date" in given:
+            assert re.fullmatch(r"[0-9]{4}-[0-9]{2}-[0-9]{2}", given["date"], re.ASCII)
+            date.fromisoformat(given["date"])
+    except (AssertionError, ValueError) as error:
+        raise Refused("LIBRARY_METADATA_INVALID", "/root", str(error)) from None
+
+
+def no_key_twice(pairs: list) -> dict:
+    keys = [key for key, _ in pairs]
+    assert len(keys) == len(set(keys))
+    return dict(pairs)
+
+
+def check_text(text: object, lines: bool) -> None:
+    assert isinstance(text, str) and not any(steers(char) and not (lines and char == "\n") for char in text)
+    assert lines or len(text.encode("utf-8")) <= MAX_TEXT
+
+
+def read_spectra(contents: bytes, pointer: str) -> int:
+    """The number of entries of a page of spectra."""
+    cursor = Cursor(contents, pointer)
+    known = cursor.take(cursor.varint())
+    for flag in known:
+        if flag > 1:
+            cursor.fail("neither known nor unknown")
+        if flag:
+            (largest,) = struct.unpack("<f", cursor.take(4))
+            if not math.isfinite(largest) or 255 not in cursor.take(48):
+                cursor.fail("no largest level")
+    cursor.end(False)
+    return len(known)
+
+
+def read_leaf(contents: bytes, pointer: str, minor: int) -> list[Entry]:
     """Section 5: the columns of a leaf."""
     cursor = Cursor(contents, pointer)
     count = cursor.count()
     if count == 0:
         cursor.fail("no entry")
-    words = [cursor.text() for _ in range(cursor.count())]
-    if any(a.encode() >= b.encode() for a, b in zip(words, words[1:])):
-        cursor.fail("words are not ascending")
+    words = read_texts(cursor)
     names = [cursor.utf8(name) for name in cursor.following(count)]
     entries = [Entry(name) for name in names]
     for entry in entries:
@@ -195,8 +256,40 @@ def read_leaf(contents: bytes, pointer: str, newer: bool) -> list[Entry]:
         entry.objects = read_objects(cursor)
     for entry in entries:
         entry.hash = cursor.take(32)
-    cursor.end(newer)
+    if minor >= 1:
+        read_rights(cursor, entries)
+    cursor.end(minor > MINOR)
     return entries
+
+
+def read_texts(cursor: Cursor) -> list[str]:
+    texts = [cursor.text() for _ in range(cursor.count())]
+    if any(a.encode() >= b.encode() for a, b in zip(texts, texts[1:])):
+        cursor.fail("texts are not ascending")
+    return texts
+
+
+def read_rights(cursor: Cursor, entries: list[Entry]) -> None:
+    """Licences, authors, quantities and felt differences."""
+    texts = read_texts(cursor)
+    columns = []
+    for _ in range(2):
+        choices = [cursor.varint() for _ in entries]
+        if any(choice > len(texts) for choice in choices):
+            cursor.fail("no such right")
+        columns.append([texts[choice - 1] if choice else None for choice in choices])
+    quantities = list(cursor.take(len(entries)))
+    if any(quantity >= len(QUANTITIES) for quantity in quantities):
+        cursor.fail("no such quantity")
+    for entry, licence, author, quantity in zip(entries, *columns, quantities):
+        entry.rights = (licence, author, QUANTITIES[quantity])
+    if any(cursor.varint() > MAX_FELT for _ in entries):
+        cursor.fail("a felt difference is too large")
+
+
+def start(text: str | None) -> str | None:
+    """The start of a text that a choice has."""
+    return text if text is None else text.encode("utf-8")[:MAX_TEXT].decode("utf-8", "ignore")
 
 
 def read_words(cursor: Cursor, words: list[str]) -> list[str]:

@@ -4,19 +4,20 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::settings::Metadata;
 use htex_build::{Addition, EditSummary, Filter, LibraryEdit, metadata_value};
-use htex_format::library::NamePattern;
+use htex_format::library::{Library, LibraryMetadata, NamePattern};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
+use super::described;
 use super::pack::{PackReport, sources};
 use crate::assets::check_metadata;
 use crate::commands::validate::is_library;
-use crate::failure::{Failure, Result};
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
 use crate::output::{bar, show, shown};
 use crate::outputs::check_outputs;
 
-/// Change a library: remove, rename and add textures, and edit their metadata
+/// Change a library: its textures, their metadata, and what it says about itself
 ///
 /// The command needs no recordings. It removes textures first, then renames and adds textures, and
 /// then changes metadata. All other textures stay the same, byte for byte. The result is the
@@ -72,6 +73,11 @@ pub(crate) struct Edit {
     #[arg(long = "where", value_name = "FIELD=GLOB")]
     filters: Vec<Filter>,
 
+    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
+    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    #[arg(long, value_name = "ENTRY=TEXT")]
+    describe: Vec<String>,
+
     /// Also accept textures that state no licence
     #[arg(long)]
     unlicensed: bool,
@@ -89,6 +95,7 @@ impl Edit {
                 "{file}: a library elsewhere is not replaced; name another file to write by -o FILE"
             )));
         }
+        let library_metadata = self.library_metadata()?;
         let edit = LibraryEdit {
             remove: self.remove,
             rename: self.rename,
@@ -98,11 +105,12 @@ impl Edit {
             remove_tags: self.remove_tag,
             table: self.table,
             filters: self.filters,
+            library_metadata,
             allows_unlicensed: self.unlicensed,
         };
         if edit.is_empty() {
             return Err(Failure::usage(
-                "nothing to change: give at least one of --add, --remove, --rename, --set, --add-tag, --remove-tag and --table",
+                "nothing to change: give at least one of --add, --remove, --rename, --set, --add-tag, --remove-tag, --table and --describe",
             ));
         }
         check_metadata(&edit.metadata)?;
@@ -115,6 +123,16 @@ impl Edit {
         bar.finish_and_clear();
         let packed = PackReport { file: output, name: edited.name.clone(), packed: edited.packed };
         show(&EditReport { edited, packed }, self.json)
+    }
+}
+
+impl Edit {
+    fn library_metadata(&self) -> Result<Option<LibraryMetadata>> {
+        if self.describe.is_empty() {
+            return Ok(None);
+        }
+        let library = Library::open(&self.library).map_err(for_file(&self.library))?;
+        described(library.metadata(), &self.describe).map(Some)
     }
 }
 

@@ -3,6 +3,7 @@
 use htex_base::finding::plain;
 use htex_format::Law;
 use htex_format::library::{Entry, Interval};
+use serde::Serialize;
 
 use crate::assets::short_name;
 use crate::failure::Result;
@@ -24,12 +25,17 @@ impl Listing {
     }
 
     pub(super) fn add(&mut self, entry: &Entry) -> Result<()> {
+        self.add_line(entry, &row(entry))
+    }
+
+    /// Adds an entry of a kind of its own: a value for JSON, and a line of the table.
+    pub(super) fn add_line(&mut self, value: &impl Serialize, line: &str) -> Result<()> {
         if self.is_json {
-            let json = json_line(entry)?;
+            let json = json_line(value)?;
             self.text += if self.count == 0 { "[" } else { ",\n " };
             self.text += &json;
         } else {
-            self.text += &row(entry);
+            self.text += line;
         }
         self.count += 1;
         if self.text.len() >= BUFFER_BYTES {
@@ -54,7 +60,7 @@ impl Listing {
     }
 }
 
-fn row(entry: &Entry) -> String {
+pub(super) fn row(entry: &Entry) -> String {
     let models: Vec<&str> = entry.models.iter().map(|id| short_name(id)).collect();
     let (speed, force) = (entry.conditions.speed_mm_s, entry.conditions.force_n);
     format!(
@@ -77,7 +83,7 @@ fn law(law: &Law) -> String {
     format!("f^{a} v^{b} F^{c}")
 }
 
-fn range(interval: Option<Interval>, unit: &str) -> String {
+pub(super) fn range(interval: Option<Interval>, unit: &str) -> String {
     match interval {
         None => format!("? {unit}"),
         Some(Interval { min, max }) if min == max => format!("{} {unit}", number(min)),

@@ -2,7 +2,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_build::{LibraryMerge, OnConflict};
+use htex_format::library::LibraryMetadata;
 
+use super::described;
 use super::pack::PackReport;
 use crate::failure::{Failure, Result};
 use crate::located;
@@ -34,6 +36,11 @@ pub(crate) struct Merge {
     /// Name of the merged library [default: the file's name]
     #[arg(long)]
     name: Option<String>,
+
+    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
+    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    #[arg(long, value_name = "ENTRY=TEXT")]
+    describe: Vec<String>,
 
     /// Print JSON
     #[arg(long)]
@@ -68,6 +75,7 @@ impl Merge {
                 Conflict::First => OnConflict::First,
                 Conflict::Last => OnConflict::Last,
             },
+            metadata: described(&LibraryMetadata::default(), &self.describe)?,
         };
         let stem = output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let name = self.name.unwrap_or(stem);

@@ -1,12 +1,15 @@
 //! The subcommand `htex lib` for libraries of textures.
 
 mod cat;
+#[cfg(feature = "build")]
+mod catalogue;
 mod diff;
 #[cfg(feature = "build")]
 mod edit;
 #[cfg(feature = "build")]
 mod export;
 mod find;
+mod info;
 mod listing;
 mod ls;
 #[cfg(feature = "build")]
@@ -20,7 +23,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use htex_base::storage::{Location, Storage};
-use htex_format::library::{Library, LibraryFile};
+use htex_format::library::{Library, LibraryFile, LibraryMetadata};
 
 pub(super) use verify::check;
 
@@ -47,7 +50,9 @@ subcommands! {
         Edit(edit::Edit) if feature = "build",
         Merge(merge::Merge) if feature = "build",
         Export(export::ExportAll) if feature = "build",
+        Catalogue(catalogue::Catalogue) if feature = "build",
         Unpack(unpack::Unpack),
+        Info(info::Info),
         Ls(ls::Ls),
         Find(find::Find),
         Cat(cat::Cat),
@@ -60,6 +65,19 @@ impl Lib {
     pub(crate) fn run(self) -> Result {
         self.command.run()
     }
+}
+
+/// Changes what a library says about itself, as `--describe` says.
+fn described(before: &LibraryMetadata, given: &[String]) -> Result<LibraryMetadata> {
+    let mut metadata = before.clone();
+    for text in given {
+        let wrong = |problem: String| Failure::Usage(format!("--describe {text}: {problem}"));
+        let (name, value) =
+            text.split_once('=').ok_or_else(|| wrong("give ENTRY=TEXT".to_owned()))?;
+        metadata.set(name, value).map_err(wrong)?;
+    }
+    metadata.check().map_err(|problem| Failure::Usage(format!("--describe: {problem}")))?;
+    Ok(metadata)
 }
 
 /// Refuses to write a file that exists, unless `force` is given and the file is a regular one.

@@ -3,11 +3,15 @@ use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_author::describe;
 use htex_base::files::AtFile;
-use htex_format::library::{EXTENSION, Library, LibraryError, PackSummary, Writer};
+use htex_format::library::{
+    EXTENSION, Library, LibraryError, LibraryMetadata, PackSummary, PreparedTexture, Writer,
+};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
+use super::described;
 use crate::assets::read_asset;
 use crate::commands::validate::is_library;
 use crate::failure::{Failure, Result, for_file};
@@ -36,6 +40,11 @@ pub(crate) struct Pack {
     /// Name of the library [default: the file's name]
     #[arg(long)]
     name: Option<String>,
+
+    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
+    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    #[arg(long, value_name = "ENTRY=TEXT")]
+    describe: Vec<String>,
 
     /// Also pack textures that state no licence. Only the author of such a texture may then pass on
     /// the library
@@ -69,11 +78,15 @@ impl Pack {
         if self.unlicensed {
             writer.allow_unlicensed();
         }
+        writer.describe_with(describe);
+        writer.set_metadata(described(&LibraryMetadata::default(), &self.describe)?);
         let bar = bar(sources.len() as u64);
-        for (name, path) in &sources {
-            let bytes = read_asset(path)?;
-            writer.add(name, &bytes).map_err(for_file(path))?;
-            bar.inc(1);
+        let all: Vec<(&String, &PathBuf)> = sources.iter().collect();
+        for batch in all.chunks(BATCH) {
+            for ((name, path), prepared) in batch.iter().zip(prepared(batch)) {
+                writer.add_prepared(name, prepared?).map_err(for_file(path))?;
+                bar.inc(1);
+            }
         }
         for path in &libraries {
             let opened = Library::open(path).map_err(for_file(path))?;
@@ -95,6 +108,28 @@ impl Pack {
             _ => Failure::from(error).in_file(&self.output),
         }
     }
+}
+
+/// Number of textures that are read at once, on all processors.
+const BATCH: usize = 256;
+
+/// Reads textures and prepares them for a library, on all processors.
+fn prepared(batch: &[(&String, &PathBuf)]) -> Vec<Result<PreparedTexture>> {
+    let prepare = |path: &PathBuf| {
+        PreparedTexture::new(read_asset(path)?, Some(describe)).map_err(for_file(path))
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let parts = batch.chunks(batch.len().div_ceil(threads).max(1));
+    std::thread::scope(|scope| {
+        let part = |part: &[(&String, &PathBuf)]| {
+            part.iter().map(|(_, path)| prepare(path)).collect::<Vec<_>>()
+        };
+        let threads: Vec<_> = parts.map(|paths| scope.spawn(move || part(paths))).collect();
+        let parts = threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        parts.flatten().collect()
+    })
 }
 
 /// The report on a library that was written.

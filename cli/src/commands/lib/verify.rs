@@ -2,10 +2,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_base::finding::Report;
+use htex_format::library::Library;
 
 use crate::commands::validate::show_reports;
-use crate::failure::{Result, for_file};
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
+use crate::output::shown;
 
 /// Check the index and every texture of one or more libraries; exit status 1 if a library is
 /// invalid.
@@ -17,6 +19,11 @@ pub(crate) struct Verify {
     #[arg(required = true, value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 
+    /// BLAKE3 that the library must have, as `htex lib info` prints it. It comes from a place that
+    /// you trust, and shows that the library is the one that was published
+    #[arg(long, value_name = "HEX", value_parser = blake3)]
+    blake3: Option<[u8; 32]>,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -24,9 +31,29 @@ pub(crate) struct Verify {
 
 impl Verify {
     pub(crate) fn run(self) -> Result {
+        if let Some(expected) = self.blake3 {
+            let [library] = &self.libraries[..] else {
+                return Err(Failure::usage("--blake3 is of one library; name one"));
+            };
+            let opened = Library::open(library).map_err(for_file(library))?;
+            let found = opened.index().blake3();
+            if found != expected {
+                return Err(Failure::Other(format!(
+                    "{}: it has the BLAKE3 {}, so it is another library; get it again from a place that you trust",
+                    shown(library),
+                    blake3::Hash::from_bytes(found)
+                )));
+            }
+        }
         let reports = self.libraries.iter().map(|path| Ok((path.as_path(), check(path)?)));
         show_reports(reports, self.json)
     }
+}
+
+fn blake3(text: &str) -> Result<[u8; 32], String> {
+    let hash = blake3::Hash::from_hex(text.trim());
+    hash.map(|hash| *hash.as_bytes())
+        .map_err(|_| "give the 64 hexadecimal digits that `htex lib info` prints".to_owned())
 }
 
 /// Validates a library.

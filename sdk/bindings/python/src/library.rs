@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use htex::format::Asset;
 use htex::library::storage::{Location, Storage};
 use htex::library::{
-    Entry, Interval, LibraryError, LibraryFile, LibrarySource as Bytes, Query, Writer,
+    Entry, Interval, LibraryError, LibraryFile, LibraryMetadata, LibrarySource as Bytes, Query,
+    Writer,
 };
 use htex_author::settings::Metadata;
 use htex_build::{Addition, BuildError, LibraryEdit, LibraryMerge, OnConflict};
+use htex_format::{Quantity, UnknownName};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -115,8 +117,23 @@ impl Library {
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
 
+    /// What the library says about itself: a dict of the entries that it states.
+    #[getter]
+    fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        // Texts always become JSON.
+        let json = serde_json::to_string(self.library.metadata()).unwrap_or_default();
+        py.import("json")?.call_method1("loads", (json,))
+    }
+
+    /// BLAKE3 hash of the index, hexadecimal. It names the library.
+    #[getter]
+    fn blake3(&self) -> String {
+        blake3::Hash::from_bytes(self.library.index().blake3()).to_hex().to_string()
+    }
+
     /// Returns the entries of the textures that match all the given criteria.
-    #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None))]
+    #[allow(clippy::too_many_arguments, reason = "the keywords of a Python function")]
+    #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None, license=None, author=None, quantity=None, max_felt_db=None))]
     fn find<'py>(
         &self,
         py: Python<'py>,
@@ -125,10 +142,57 @@ impl Library {
         speed_mm_s: Option<f64>,
         force_n: Option<f64>,
         model: Option<String>,
+        license: Option<String>,
+        author: Option<String>,
+        quantity: Option<&str>,
+        max_felt_db: Option<f64>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let query = Query { words: words.extract()?, tags, speed_mm_s, force_n, model };
+        let quantity = quantity.map(str::parse).transpose();
+        let query = Query {
+            words: words.extract()?,
+            tags,
+            speed_mm_s,
+            force_n,
+            model,
+            license,
+            author,
+            quantity: quantity.map_err(|error: UnknownName| option(error.to_string()))?,
+            felt_error_rms_db: max_felt_db,
+        };
         let entries = py.detach(|| self.matching(&query))?;
         entries.iter().map(|entry| entry_data(py, entry)).collect()
+    }
+
+    /// Returns the textures whose spectra are nearest to that of a texture of this library, as pairs
+    /// of the distance in decibels and the entry, the nearest one first.
+    #[pyo3(signature = (name, count=10))]
+    fn similar<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        count: usize,
+    ) -> PyResult<Vec<(f64, Bound<'py, PyAny>)>> {
+        let found = py.detach(|| {
+            let entry = self.library.needed(name)?;
+            let spectrum = self.library.description(&entry)?.spectrum;
+            match spectrum.zip(entry.quantity) {
+                Some((spectrum, quantity)) => {
+                    self.library.similar(&spectrum, quantity, &Query::default(), count)
+                }
+                None => Ok(Vec::new()),
+            }
+        });
+        let found = found.map_err(raised)?;
+        found.iter().map(|one| Ok((one.distance_db, entry_data(py, &one.entry)?))).collect()
+    }
+
+    /// Returns the textures whose spectra nearly equal that of a texture before them: name, name of
+    /// the other texture, distance in decibels.
+    #[pyo3(signature = (within_db=0.5))]
+    fn duplicates(&self, py: Python<'_>, within_db: f64) -> PyResult<Vec<(String, String, f64)>> {
+        let found = py.detach(|| self.library.duplicates(&Query::default(), within_db));
+        let found = found.map_err(raised)?.into_iter();
+        Ok(found.map(|one| (one.entry.name, one.of, one.distance_db)).collect())
     }
 
     /// Returns the entry of the texture with this name.
@@ -150,7 +214,7 @@ impl Library {
     /// Writes the result to `output`, or replaces the library.
     #[staticmethod]
     #[allow(clippy::too_many_arguments, reason = "the keywords of a Python function")]
-    #[pyo3(signature = (path, output=None, *, remove=Vec::new(), rename=BTreeMap::new(), add=BTreeMap::new(), add_libraries=Vec::new(), metadata=None, add_tags=Vec::new(), remove_tags=Vec::new(), filters=BTreeMap::new(), table=None, unlicensed=false))]
+    #[pyo3(signature = (path, output=None, *, remove=Vec::new(), rename=BTreeMap::new(), add=BTreeMap::new(), add_libraries=Vec::new(), metadata=None, add_tags=Vec::new(), remove_tags=Vec::new(), filters=BTreeMap::new(), table=None, describe=None, unlicensed=false))]
     fn edit<'py>(
         py: Python<'py>,
         path: PathBuf,
@@ -164,6 +228,7 @@ impl Library {
         remove_tags: Vec<String>,
         filters: BTreeMap<String, String>,
         table: Option<PathBuf>,
+        describe: Option<BTreeMap<String, String>>,
         unlicensed: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let metadata: Metadata = match metadata {
@@ -190,6 +255,13 @@ impl Library {
             remove_tags,
             table,
             filters: filters.collect::<Result<_, String>>().map_err(option)?,
+            library_metadata: match describe {
+                Some(given) => {
+                    let opened = htex::library::Library::open(&path).map_err(raised)?;
+                    Some(described(opened.metadata(), given)?)
+                }
+                None => None,
+            },
             allows_unlicensed: unlicensed,
         };
         let to = output.as_deref().unwrap_or(&path);
@@ -211,7 +283,7 @@ impl Library {
     /// Merges library files into one. `prefixes` has a text for each library, which is put before
     /// the names of its textures. Returns the size of the file, bytes.
     #[staticmethod]
-    #[pyo3(signature = (paths, output, *, prefixes=Vec::new(), on_conflict="error", name=""))]
+    #[pyo3(signature = (paths, output, *, prefixes=Vec::new(), on_conflict="error", name="", describe=BTreeMap::new()))]
     fn merge(
         py: Python<'_>,
         paths: Vec<PathBuf>,
@@ -219,6 +291,7 @@ impl Library {
         prefixes: Vec<String>,
         on_conflict: &str,
         name: &str,
+        describe: BTreeMap<String, String>,
     ) -> PyResult<u64> {
         if !prefixes.is_empty() && prefixes.len() != paths.len() {
             let text = format!(
@@ -241,6 +314,7 @@ impl Library {
                     )));
                 }
             },
+            metadata: described(&LibraryMetadata::default(), describe)?,
         };
         Ok(py.detach(|| merge.run(&output, name)).map_err(raised)?.bytes)
     }
@@ -281,6 +355,19 @@ impl Library {
     }
 }
 
+/// Changes what a library says about itself.
+fn described(
+    before: &LibraryMetadata,
+    given: BTreeMap<String, String>,
+) -> PyResult<LibraryMetadata> {
+    let mut metadata = before.clone();
+    for (name, text) in given {
+        metadata.set(&name, &text).map_err(option)?;
+    }
+    metadata.check().map_err(option)?;
+    Ok(metadata)
+}
+
 /// Makes a `LibraryEntry`.
 fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>> {
     let range = |interval: Option<Interval>| interval.map(|i| (i.min, i.max));
@@ -303,6 +390,10 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
         law.set_item(name, data(py, "Exponent", &exponent)?)?;
     }
     fields.set_item("law", law)?;
+    fields.set_item("license", entry.license.as_deref())?;
+    fields.set_item("author", entry.author.as_deref())?;
+    fields.set_item("quantity", entry.quantity.map(Quantity::name))?;
+    fields.set_item("felt_error_rms_db", entry.felt_error_rms_db)?;
     fields.set_item("bytes", entry.bytes)?;
     fields.set_item("blake3", entry.blake3_hex())?;
     data(py, "LibraryEntry", &fields)
@@ -311,16 +402,21 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
 /// Packs textures into a library file. `textures` maps each name to a path, bytes, an object with
 /// the method `read`, or a `Texture`. Each texture must state a licence, because libraries are
 /// passed on to others. With `unlicensed=True`, textures without a licence are also packed.
+/// `describe` says what the library is: version, description, authors, homepage, source, changelog
+/// and date.
 #[pyfunction]
-#[pyo3(signature = (path, textures, *, name="", unlicensed=false))]
+#[pyo3(signature = (path, textures, *, name="", describe=BTreeMap::new(), unlicensed=false))]
 pub(crate) fn pack(
     py: Python<'_>,
     path: PathBuf,
     textures: &Bound<'_, PyAny>,
     name: &str,
+    describe: BTreeMap<String, String>,
     unlicensed: bool,
 ) -> PyResult<u64> {
     let mut writer = Writer::create(&path, name).map_err(raised)?;
+    writer.describe_with(htex_author::describe);
+    writer.set_metadata(described(&LibraryMetadata::default(), describe)?);
     if unlicensed {
         writer.allow_unlicensed();
     }

@@ -8,6 +8,8 @@ import { Handle } from "./texture.js";
 
 /** Number of index pages that are cached. Each has at most 40 KiB. */
 const KEPT_PAGES = 16;
+/** Number of bytes of the index that are read at once when all entries are listed. */
+const READ_AHEAD = 1 << 20;
 
 /** A file on a server, read with HTTP range requests. */
 class Remote {
@@ -131,8 +133,8 @@ export class Library extends Handle {
       const bytes = await this.file.read(start, end);
       core.scope((take) => core.call("htex_index_give", this.id, core.put(take, bytes), bytes.length, this.file.size));
     }
-    const { name, count, pages } = JSON.parse(core.text("htex_index_json", this.id));
-    Object.assign(this, { name, count, pageCount: pages });
+    const { pages, ...stated } = JSON.parse(core.text("htex_index_json", this.id));
+    Object.assign(this, stated, { pageCount: pages });
   }
 
   /** Returns the start and end of a range that a function writes. */
@@ -152,6 +154,21 @@ export class Library extends Handle {
     bytes.catch(() => this.pages.delete(number));
     if (this.pages.size > KEPT_PAGES) this.pages.delete(this.pages.keys().next().value);
     return bytes;
+  }
+
+  /** Yields the numbers and bytes of all index pages. Many pages are read at once. */
+  async *allPages() {
+    for (let first = 0, end; first < this.pageCount; first = end) {
+      const ranges = [];
+      for (end = first; end < this.pageCount; end++) {
+        const range = this.numbers("htex_index_page_range", end);
+        if (ranges.length > 0 && range[1] - ranges[0][0] > READ_AHEAD) break;
+        ranges.push(range);
+      }
+      const start = ranges[0][0];
+      const bytes = await this.file.read(start, ranges.at(-1)[1]);
+      for (const [i, range] of ranges.entries()) yield [first + i, bytes.subarray(range[0] - start, range[1] - start)];
+    }
   }
 
   /** Selects the page in which entries are looked up, unless it is the selected page. */
@@ -177,8 +194,7 @@ export class Library extends Handle {
 
   /** Returns the entries of all textures, in ascending order of their names. */
   async *entries() {
-    for (let number = 0; number < this.pageCount; number++) {
-      const bytes = await this.page(number);
+    for await (const [number, bytes] of this.allPages()) {
       this.read(number, bytes);
       yield* JSON.parse(this.core.text("htex_index_entries_json", this.id));
     }
@@ -186,12 +202,11 @@ export class Library extends Handle {
 
   /**
    * Returns the entries that match a query: `words` in the name or a tag, `tags`, a `speed`, a
-   * `force`, a `model`.
+   * `force`, a `model`, a `license`, an `author`, a `quantity`, a largest `felt` difference.
    */
   async *find(query) {
     const text = JSON.stringify(query);
-    for (let number = 0; number < this.pageCount; number++) {
-      const bytes = await this.page(number);
+    for await (const [number, bytes] of this.allPages()) {
       this.read(number, bytes);
       yield* this.core.scope((take) => JSON.parse(this.core.text("htex_index_find_json", this.id, this.core.putText(take, text))));
     }

@@ -335,10 +335,29 @@ export interface LibraryEntry {
   law: Law;
   /** Ids of the models of the representations. */
   models: string[];
+  /** Licence and author; absent if the texture states none, or in a library of version 1.0. */
+  license?: string;
+  author?: string;
+  /** Physical quantity of the samples; absent in a library of version 1.0. */
+  quantity?: Quantity;
+  /** Felt difference from the recordings, RMS over third octaves, dB; absent if it is not known. */
+  felt_error_rms_db?: number;
   /** Size of the texture's file, bytes. */
   bytes: number;
   /** BLAKE3 hash of the texture's file, hexadecimal. */
   blake3: string;
+}
+
+/** What a library says about itself. */
+export interface LibraryMetadata {
+  version?: string;
+  description?: string;
+  authors?: string[];
+  homepage?: string;
+  source?: string;
+  changelog?: string;
+  /** Date of the version: `YYYY-MM-DD`. */
+  date?: string;
 }
 
 /** Criteria that a texture must meet to be found. Absent criteria are ignored. */
@@ -352,6 +371,12 @@ export interface LibraryQuery {
   force?: number;
   /** Id or short name of a model that the texture must have. */
   model?: string;
+  /** Licence and author that the texture must have, ignoring case. `*` stands for any text. */
+  license?: string;
+  author?: string;
+  quantity?: Quantity;
+  /** Largest felt difference from the recordings, dB. */
+  felt?: number;
 }
 
 /**
@@ -368,14 +393,18 @@ export class Library {
   static open(source: Bytes | Readable | Address, options?: { fetch?: Fetch }): Promise<Library>;
   /** Name of the library; may be empty. */
   readonly name: string;
+  /** What the library says about itself. */
+  readonly metadata: LibraryMetadata;
+  /** BLAKE3 hash of the index, hexadecimal. It names the library. */
+  readonly blake3: string;
   /** Number of textures. */
   readonly count: number;
   /**
-   * Returns the entries of all textures, in ascending order of their names. Reads the index, page
-   * by page.
+   * Returns the entries of all textures, in ascending order of their names. Reads 1 MiB of the
+   * index at once.
    */
   entries(): AsyncGenerator<LibraryEntry>;
-  /** Returns the entries that match a query. Reads the index, page by page. */
+  /** Returns the entries that match a query. Reads 1 MiB of the index at once. */
   find(query: LibraryQuery): AsyncGenerator<LibraryEntry>;
   /** Returns the entry of a texture; undefined if there is no texture with this name. */
   entry(name: string): Promise<LibraryEntry | undefined>;

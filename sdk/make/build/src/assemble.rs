@@ -1,12 +1,13 @@
 //! Assembles the results of a build: the textures, the library, the report and the catalogue.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
+use htex_author::{FeltError, describe, played_model};
 use htex_base::files::AtFile;
-use htex_format::library::{PackSummary, Writer};
+use htex_format::library::{PackSummary, PreparedTexture, Writer};
 use htex_format::{Asset, Rights};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -99,11 +100,23 @@ pub(crate) fn assemble(
                 Writer::create(&dist.path_of(&part)?, &plan.library).map_err(at_place(&library))?;
             // The recipe's gate has already decided about licences.
             writer.allow_unlicensed();
+            writer.set_metadata(plan.metadata.clone());
             let planned = jobs.iter().zip(&plan.textures).zip(&textures);
-            for (((key, job), texture), _) in planned.filter(|(_, r)| r.status == Status::Built) {
-                let made = found(key, texture)?;
-                let bytes = asset(job, &made)?;
-                writer.add(&texture.name, &bytes).map_err(at_place(&library))?;
+            let planned: Vec<_> = planned
+                .filter(|(_, report)| report.status == Status::Built)
+                .map(|(planned, _)| planned)
+                .collect();
+            for batch in planned.chunks(BATCH) {
+                let prepared: Vec<_> = batch
+                    .par_iter()
+                    .map(|((key, job), texture)| {
+                        let made = found(key, texture)?;
+                        prepared(asset(job, &made)?, &made.record.felt)
+                    })
+                    .collect();
+                for ((_, texture), prepared) in batch.iter().zip(prepared) {
+                    writer.add_prepared(&texture.name, prepared?).map_err(at_place(&library))?;
+                }
             }
             let packed = writer.finish().map_err(at_place(&library))?;
             dist.rename(&part, Path::new(&file))?;
@@ -165,6 +178,26 @@ fn judged(
     Ok(report)
 }
 
+/// Number of textures that are prepared for the library at once, on all processors.
+const BATCH: usize = 256;
+
+/// Prepares a texture for the library. Assets seldom keep their recorded spectra, but the build
+/// knows the felt differences of their models.
+fn prepared(
+    bytes: Vec<u8>,
+    felt: &BTreeMap<String, FeltError>,
+) -> Result<PreparedTexture, BuildError> {
+    let asset =
+        Asset::from_bytes(&bytes).map_err(|error| BuildError::Damaged(error.to_string()))?;
+    let mut description = describe(&asset);
+    if description.felt_error_rms_db.is_none() {
+        let model = played_model(&asset);
+        let felt = model.and_then(|model| felt.get(&model));
+        description.felt_error_rms_db = felt.map(|felt| felt.error_rms_db);
+    }
+    Ok(PreparedTexture::of_asset(&asset, bytes, description))
+}
+
 /// Facts about the library file that was written last.
 #[derive(Serialize, Deserialize)]
 struct KeptLibrary {
@@ -178,7 +211,7 @@ struct KeptLibrary {
 fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
     let built = textures.iter().filter(|t| t.status == Status::Built);
     let named = built.map(|t| (&t.name, t.asset.as_ref().map(|asset| &asset.blake3)));
-    let parts = serde_json::json!([plan.library, named.collect::<Vec<_>>()]);
+    let parts = serde_json::json!([plan.library, plan.metadata, named.collect::<Vec<_>>()]);
     blake3::hash(parts.to_string().as_bytes()).to_hex().to_string()
 }
 

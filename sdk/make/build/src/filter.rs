@@ -67,8 +67,12 @@ impl Filter {
         manifest: &dyn Fn() -> Result<&'m Manifest, BuildError>,
     ) -> Result<bool, BuildError> {
         for filter in filters {
-            let matches = match filter.field {
-                Field::License | Field::Author | Field::Quantity => {
+            let matches = match (filter.field, entry.quantity) {
+                (Field::License, Some(_)) => filter.matches_stated(entry.license.as_deref()),
+                (Field::Author, Some(_)) => filter.matches_stated(entry.author.as_deref()),
+                (Field::Quantity, Some(quantity)) => filter.pattern.matches_text(quantity.name()),
+                // The index of a library of version 1.0 does not have them.
+                (Field::License | Field::Author | Field::Quantity, None) => {
                     filter.matches_manifest(&entry.name, manifest()?)
                 }
                 _ => filter.matches(&entry.name, &entry.tags, &entry.models, entry.contact),
@@ -82,11 +86,9 @@ impl Filter {
 
     /// Returns whether a texture with this name and this manifest matches.
     pub fn matches_manifest(&self, name: &str, manifest: &Manifest) -> bool {
-        let stated =
-            |text: &Option<String>| self.pattern.matches_text(text.as_deref().unwrap_or(""));
         match self.field {
-            Field::License => stated(&manifest.license),
-            Field::Author => stated(&manifest.author),
+            Field::License => self.matches_stated(manifest.license.as_deref()),
+            Field::Author => self.matches_stated(manifest.author.as_deref()),
             Field::Quantity => self.pattern.matches_text(manifest.quantity.name()),
             _ => {
                 let models = manifest.representations.iter().map(|r| r.model.clone());
@@ -94,6 +96,10 @@ impl Filter {
                 self.matches(name, &manifest.tags, &models, manifest.contact)
             }
         }
+    }
+
+    fn matches_stated(&self, text: Option<&str>) -> bool {
+        self.pattern.matches_text(text.unwrap_or(""))
     }
 
     fn matches(&self, name: &str, tags: &[String], models: &[String], contact: Contact) -> bool {

@@ -5,9 +5,13 @@ use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use htex_author::describe;
 use htex_author::settings::Metadata;
 use htex_base::files::{AtFile, read_regular};
-use htex_format::library::{Entry, Library, LibraryError, NamePattern, PackSummary, Writer};
+use htex_format::library::{
+    Description, Entry, Library, LibraryError, LibraryMetadata, NamePattern, PackSummary,
+    PreparedTexture, Writer,
+};
 use htex_format::{Asset, Limits, Manifest};
 use rayon::prelude::*;
 
@@ -45,6 +49,8 @@ pub struct LibraryEdit {
     pub table: Option<PathBuf>,
     /// Only textures that match all of these are removed, or get other metadata.
     pub filters: Vec<Filter>,
+    /// What the library says about itself from now on; `None` if that does not change.
+    pub library_metadata: Option<LibraryMetadata>,
     /// Whether added and edited textures may state no licence.
     pub allows_unlicensed: bool,
 }
@@ -83,7 +89,7 @@ impl LibraryEdit {
     /// Returns whether there is nothing to change.
     pub fn is_empty(&self) -> bool {
         let is_known = self.remove.is_empty() && self.rename.is_empty() && self.add.is_empty();
-        is_known && !self.changes_all() && self.table.is_none()
+        is_known && !self.changes_all() && self.table.is_none() && self.library_metadata.is_none()
     }
 
     /// Changes a library, and writes it to `output`, which may be the same file. `told` is called
@@ -120,6 +126,9 @@ impl LibraryEdit {
         if self.allows_unlicensed {
             writer.allow_unlicensed();
         }
+        writer.describe_with(describe);
+        let metadata = self.library_metadata.as_ref().unwrap_or(opened.metadata());
+        writer.set_metadata(metadata.clone());
         let mut run = Run { edit: self, table, writer, edited: 0, told };
         let (mut removed, mut renamed) = (0, 0);
         let mut used = vec![false; self.remove.len()];
@@ -236,21 +245,30 @@ impl Run<'_> {
         kept: &mut BTreeMap<String, String>,
     ) -> Result<(), BuildError> {
         let edit = self.edit;
+        // Metadata change no spectrum. An index of version 1.0 has none.
+        let is_described = library.index().minor_version() > 0;
+        let descriptions = batch.iter().map(|texture| {
+            let known = is_described.then(|| library.description(&texture.entry)).transpose();
+            known.map_err(at_place(path.display()))
+        });
+        let descriptions = descriptions.collect::<Result<Vec<_>, BuildError>>()?;
         let edited: Vec<_> = batch
             .par_iter()
-            .map(|texture| {
+            .zip(descriptions)
+            .map(|(texture, known)| {
                 let bytes = library.read(&texture.entry).map_err(at_place(path.display()))?;
                 let place = format!("{}, texture {}", path.display(), texture.entry.name);
-                edit.edited(&bytes, texture.is_chosen, texture.row.as_ref(), &place)
+                edit.edited(&bytes, texture.is_chosen, texture.row.as_ref(), known, &place)
             })
             .collect();
-        for (texture, bytes) in batch.drain(..).zip(edited) {
-            match bytes? {
+        for (texture, edited) in batch.drain(..).zip(edited) {
+            match edited? {
                 None => {
                     kept.insert(texture.entry.name, texture.name);
                 }
-                Some(bytes) => {
-                    self.writer.add(&texture.name, &bytes).map_err(at_place(path.display()))?;
+                Some(edited) => {
+                    let added = self.writer.add_prepared(&texture.name, edited);
+                    added.map_err(at_place(path.display()))?;
                     self.edited += 1;
                 }
             }
@@ -279,9 +297,11 @@ impl Run<'_> {
                     let place = file.display().to_string();
                     let row = self.table.take(name);
                     let is_chosen = self.edit.is_chosen(name, &bytes, &place)?;
-                    let edited = self.edit.edited(&bytes, is_chosen, row.as_ref(), &place)?;
-                    let bytes = edited.unwrap_or(bytes);
-                    self.writer.add(name, &bytes).map_err(at_place(&place))?;
+                    match self.edit.edited(&bytes, is_chosen, row.as_ref(), None, &place)? {
+                        Some(edited) => self.writer.add_prepared(name, edited),
+                        None => self.writer.add(name, &bytes),
+                    }
+                    .map_err(at_place(&place))?;
                     count += 1;
                 }
             }
@@ -313,14 +333,16 @@ impl LibraryEdit {
         Ok(self.filters.iter().all(|filter| filter.matches_manifest(name, &manifest)))
     }
 
-    /// Returns the bytes of a texture with other metadata; `None` if it has them already.
+    /// Returns a texture with other metadata; `None` if it has them already. `known` is its
+    /// description, if the library has it.
     fn edited(
         &self,
         bytes: &[u8],
         is_chosen: bool,
         row: Option<&Metadata>,
+        known: Option<Description>,
         place: &str,
-    ) -> Result<Option<Vec<u8>>, BuildError> {
+    ) -> Result<Option<PreparedTexture>, BuildError> {
         let changes = is_chosen && self.changes_all();
         if !changes && row.is_none() {
             return Ok(None);
@@ -344,6 +366,8 @@ impl LibraryEdit {
         if asset.manifest == before {
             return Ok(None);
         }
-        asset.to_bytes().map(Some).map_err(at_place(place))
+        let bytes = asset.to_bytes().map_err(at_place(place))?;
+        let description = known.unwrap_or_else(|| describe(&asset));
+        Ok(Some(PreparedTexture::of_asset(&asset, bytes, description)))
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use htex_format::library::{Library, LibraryError, PackSummary, Writer};
+use htex_format::library::{Library, LibraryError, LibraryMetadata, PackSummary, Writer};
 
 use crate::BuildError;
 use crate::error::at_place;
@@ -28,6 +28,7 @@ pub enum OnConflict {
 /// let merge = LibraryMerge {
 ///     libraries: vec![("wood.htexlib".into(), "wood/".to_owned()), ("cloth.htexlib".into(), "cloth/".to_owned())],
 ///     on_conflict: OnConflict::Error,
+///     ..LibraryMerge::default()
 /// };
 /// merge.run("all.htexlib".as_ref(), "All")?;
 /// # Ok::<(), htex_build::BuildError>(())
@@ -37,6 +38,8 @@ pub struct LibraryMerge {
     /// The libraries, each with a text that is put before the names of its textures.
     pub libraries: Vec<(PathBuf, String)>,
     pub on_conflict: OnConflict,
+    /// What the merged library says about itself.
+    pub metadata: LibraryMetadata,
 }
 
 impl LibraryMerge {
@@ -51,6 +54,8 @@ impl LibraryMerge {
     pub fn run(&self, output: &Path, name: &str) -> Result<PackSummary, BuildError> {
         let of_output = |error: LibraryError| BuildError::at_place(output.display(), error);
         let mut writer = Writer::create(output, name).map_err(of_output)?;
+        writer.describe_with(htex_author::describe);
+        writer.set_metadata(self.metadata.clone());
         let mut hashes: BTreeMap<String, [u8; 32]> = BTreeMap::new();
         let mut conflicts = Vec::new();
         let mut libraries: Vec<_> = self.libraries.iter().collect();

@@ -7,6 +7,8 @@ use globset::GlobSet;
 use htex_author::settings::Metadata;
 
 use crate::BuildError;
+use htex_format::library::LibraryMetadata;
+
 use crate::error::at_place;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
@@ -19,6 +21,8 @@ use crate::template::{Fields, fill};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     pub library: String,
+    /// What the library says about itself.
+    pub metadata: LibraryMetadata,
     /// The textures, sorted by name.
     pub textures: Vec<PlannedTexture>,
 }
@@ -113,7 +117,9 @@ impl Plan {
             check_files(texture)?;
         }
         check_folders(&textures)?;
-        Ok(Self { library: recipe.library.name.clone(), textures })
+        let metadata = recipe.library.metadata.clone();
+        metadata.check().map_err(at_place("library"))?;
+        Ok(Self { library: recipe.library.name.clone(), metadata, textures })
     }
 }
 

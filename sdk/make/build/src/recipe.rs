@@ -7,6 +7,7 @@ use htex_author::Exploration;
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
 use htex_base::files::{AtFile, read_regular_text};
 use htex_exchange::SignalSettings;
+use htex_format::library::LibraryMetadata;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
@@ -52,10 +53,13 @@ pub struct Recipe {
 
 /// The library to build.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
+    /// What the library says about itself, such as its version.
+    #[serde(flatten)]
+    pub metadata: LibraryMetadata,
     /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
     /// the recipe. Native libraries run with all rights, so a recipe cannot name them. The user can
     /// name them with `htex build --plugin`.

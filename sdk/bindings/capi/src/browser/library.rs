@@ -112,7 +112,8 @@ pub unsafe extern "C" fn htex_index_give(
     })
 }
 
-/// Writes the library's name, its number of textures and its number of pages, as JSON.
+/// Writes the library's name, what it says about itself, its hash, its number of textures and its
+/// number of pages, as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_json(
     index: u64,
@@ -125,6 +126,8 @@ pub unsafe extern "C" fn htex_index_json(
         let index = state.index()?;
         let json = serde_json::json!({
             "name": index.name(),
+            "metadata": index.metadata(),
+            "blake3": index.blake3().iter().map(|byte| format!("{byte:02x}")).collect::<String>(),
             "count": index.len(),
             "pages": index.leaves(),
         });
@@ -239,6 +242,10 @@ struct QueryDocument {
     speed: Option<f64>,
     force: Option<f64>,
     model: Option<String>,
+    license: Option<String>,
+    author: Option<String>,
+    quantity: Option<htex::format::Quantity>,
+    felt: Option<f64>,
 }
 
 impl From<QueryDocument> for Query {
@@ -249,6 +256,10 @@ impl From<QueryDocument> for Query {
             speed_mm_s: asked.speed,
             force_n: asked.force,
             model: asked.model,
+            license: asked.license,
+            author: asked.author,
+            quantity: asked.quantity,
+            felt_error_rms_db: asked.felt,
         }
     }
 }

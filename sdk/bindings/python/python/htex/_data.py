@@ -51,6 +51,15 @@ class LibraryEntry:
     law: dict[str, Exponent]
     """How frequencies and level change at motions outside the recorded conditions: as
     ``Texture.law``, but without estimates and standard errors."""
+    license: str | None
+    """Licence; ``None`` if the texture states none, or in a library of version 1.0."""
+    author: str | None
+    """Who made the texture; ``None`` as for the licence."""
+    quantity: str | None
+    """Physical quantity of the samples; ``None`` in a library of version 1.0."""
+    felt_error_rms_db: float | None
+    """Felt difference from the recordings, RMS over third octaves, decibels; ``None`` if it is
+    not known."""
     bytes: int
     """Size of the texture's file, bytes."""
     blake3: str

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use crate::library::coarse_spectrum::CoarseSpectrum;
 use crate::library::entry::{Conditions, Entry, Interval};
-use crate::library::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED, length};
+use crate::library::leaf::{
+    CONTACTS, FORCE, MOST_FELT, ONE_FORCE, ONE_SPEED, QUANTITIES, SOURCES, SPEED, length,
+};
+use crate::library::metadata::LibraryMetadata;
 use crate::library::page;
 use crate::library::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
@@ -21,6 +25,11 @@ pub(crate) struct Pages {
     separators: Vec<Vec<u8>>,
     /// Entries of the leaf that is being filled.
     entries: Vec<Entry>,
+    /// Spectra of these entries.
+    spectra: Vec<Option<CoarseSpectrum>>,
+    /// Packed pages of spectra, and their lengths.
+    spectrum_pages: Vec<u8>,
+    spectrum_lengths: Vec<u64>,
     words: BTreeSet<String>,
     size: usize,
     last: Vec<u8>,
@@ -28,7 +37,7 @@ pub(crate) struct Pages {
 
 impl Pages {
     /// Adds an entry. Its name must sort after all names added before.
-    pub(crate) fn add(&mut self, entry: Entry) {
+    pub(crate) fn add(&mut self, entry: Entry, spectrum: Option<CoarseSpectrum>) {
         let size = self.size_of(&entry);
         // A leaf has at least one entry, however large. Even an entry with the most words and cuts
         // stays below the 64 KiB that readers allow.
@@ -49,12 +58,13 @@ impl Pages {
         // Computed again, because a new leaf cannot share words or the start of a name with an
         // earlier one.
         self.size += self.size_of(&entry);
-        let words = entry.tags.iter().chain(&entry.models);
+        let words = words(&entry);
         for word in words.filter(|word| !self.words.contains(*word)).cloned().collect::<Vec<_>>() {
             self.words.insert(word);
         }
         self.last = entry.name.clone().into_bytes();
         self.entries.push(entry);
+        self.spectra.push(spectrum);
     }
 
     /// Returns an upper bound of the bytes that an entry adds to the leaf. Indices of words are
@@ -64,7 +74,7 @@ impl Pages {
         let name = entry.name.as_bytes();
         // Two lengths of up to 255, which take up to two bytes each.
         let name = name.len() - common_prefix(before, name) + 4;
-        let words = entry.tags.iter().chain(&entry.models);
+        let words = words(entry);
         let new = words.clone().filter(|word| !self.words.contains(*word));
         let words = new.map(|word| word.len() + 2).sum::<usize>() + 2 * words.count() + 2;
         let cuts = entry
@@ -73,7 +83,7 @@ impl Pages {
             .iter()
             .map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
         // After the name and words: conditions (33), own length, number of cuts (2), cuts, hash
-        // (32), and contact and law (25).
+        // (32), contact and law (25), and quantity and felt difference (4).
         name + words
             + 33
             + varint_bytes(length(&entry.place.own))
@@ -81,11 +91,11 @@ impl Pages {
             + cuts.sum::<usize>()
             + 32
             + 25
+            + 4
     }
 
-    /// Finishes the index. Returns the packed root page, the packed leaf pages, and the number of
-    /// leaves.
-    pub(crate) fn finish(mut self, name: &str) -> (Vec<u8>, Vec<u8>, u32) {
+    /// Finishes the index.
+    pub(crate) fn finish(mut self, name: &str, metadata: &LibraryMetadata) -> PackedIndex {
         if !self.entries.is_empty() {
             self.end_leaf();
         }
@@ -100,25 +110,75 @@ impl Pages {
         for length in &self.lengths {
             put_varint(&mut root, *length);
         }
-        (page::pack(&root), self.leaves, self.lengths.len() as u32)
+        // Metadata are texts, which always become JSON.
+        let json = serde_json::to_vec(metadata).unwrap_or_else(|_| b"{}".to_vec());
+        put_varint(&mut root, json.len() as u64);
+        root.extend(json);
+        for length in &self.spectrum_lengths {
+            put_varint(&mut root, *length);
+        }
+        root.extend(blake3::hash(&self.spectrum_pages).as_bytes());
+        PackedIndex {
+            root: page::pack(&root),
+            leaf_count: self.lengths.len() as u32,
+            leaves: self.leaves,
+            spectra: self.spectrum_pages,
+        }
     }
 
     fn end_leaf(&mut self) {
         let page = page::pack(&leaf(&self.entries));
         self.lengths.push(page.len() as u64);
         self.leaves.extend(page);
+        let page = spectra(&self.spectra);
+        self.spectrum_lengths.push(page.len() as u64);
+        self.spectrum_pages.extend(page);
+        self.spectra.clear();
         self.entries.clear();
         self.words.clear();
         self.size = 0;
     }
 }
 
+/// The pages of a finished index.
+pub(crate) struct PackedIndex {
+    pub root: Vec<u8>,
+    pub leaves: Vec<u8>,
+    pub leaf_count: u32,
+    pub spectra: Vec<u8>,
+}
+
+/// Returns all words of an entry: those of the first list of words in a leaf, then those of the
+/// second.
+fn words(entry: &Entry) -> impl Iterator<Item = &String> + Clone {
+    let rights = entry.license.iter().chain(&entry.author);
+    entry.tags.iter().chain(&entry.models).chain(rights)
+}
+
+/// Encodes the spectra of a leaf. Returns no bytes if there are none.
+fn spectra(spectra: &[Option<CoarseSpectrum>]) -> Vec<u8> {
+    if spectra.iter().all(Option::is_none) {
+        return Vec::new();
+    }
+    let mut page = Vec::new();
+    put_varint(&mut page, spectra.len() as u64);
+    page.extend(spectra.iter().map(|spectrum| u8::from(spectrum.is_some())));
+    for spectrum in spectra.iter().flatten() {
+        page.extend(spectrum.largest_db.to_le_bytes());
+        page.extend(spectrum.levels);
+    }
+    page::pack(&page)
+}
+
+/// Returns distinct texts in ascending order.
+fn sorted<'a>(texts: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+    let distinct: BTreeSet<&str> = texts.map(String::as_str).collect();
+    distinct.into_iter().collect()
+}
+
 /// Encodes the entries of a leaf. There must be at least one.
 fn leaf(entries: &[Entry]) -> Vec<u8> {
-    let words = entries.iter().flat_map(|e| e.tags.iter().chain(&e.models));
-    let mut distinct = BTreeSet::new();
-    distinct.extend(words.map(String::as_str));
-    let words: Vec<&str> = distinct.into_iter().collect();
+    let words = sorted(entries.iter().flat_map(|e| e.tags.iter().chain(&e.models)));
     let mut page = Vec::with_capacity(LEAF_BYTES);
     put_varint(&mut page, entries.len() as u64);
     put_varint(&mut page, words.len() as u64);
@@ -138,7 +198,26 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     entries.iter().for_each(|e| put_varint(&mut page, length(&e.place.own)));
     entries.iter().for_each(|e| put_cuts(&mut page, e));
     entries.iter().for_each(|e| page.extend(e.blake3));
+    let rights = sorted(entries.iter().flat_map(|e| e.license.iter().chain(&e.author)));
+    put_varint(&mut page, rights.len() as u64);
+    rights.iter().for_each(|text| put_text(&mut page, text));
+    entries.iter().for_each(|e| put_choice(&mut page, &rights, e.license.as_deref()));
+    entries.iter().for_each(|e| put_choice(&mut page, &rights, e.author.as_deref()));
+    let number = |e: &Entry| QUANTITIES.iter().position(|q| Some(*q) == e.quantity);
+    page.extend(entries.iter().map(|e| number(e).unwrap_or_default() as u8));
+    for felt in entries.iter().map(|e| e.felt_error_rms_db) {
+        // Rounded up, so that a search for at most this error finds no texture that has more. The
+        // small part is for hundredths that a decimal number cannot represent.
+        let hundredths = felt.map(|db| libm::ceil(db * 100.0 - 1e-6).clamp(0.0, MOST_FELT as f64));
+        put_varint(&mut page, hundredths.map_or(0, |hundredths| hundredths as u64 + 1));
+    }
     page
+}
+
+/// Appends 0, or one more than the index of a text in `texts`.
+fn put_choice(page: &mut Vec<u8>, texts: &[&str], chosen: Option<&str>) {
+    let index = chosen.and_then(|chosen| texts.binary_search(&chosen).ok());
+    put_varint(page, index.map_or(0, |index| index as u64 + 1));
 }
 
 fn put_words(page: &mut Vec<u8>, words: &[&str], chosen: &[String]) {

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::{Contact, Law};
+use crate::{Contact, Law, Quantity};
 use serde::{Serialize, Serializer};
 
 /// An entry of the index: a texture's name, search terms, recorded conditions, models, size and
@@ -32,6 +32,20 @@ pub struct Entry {
     pub law: Law,
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
+    /// Licence of the texture; `None` if it states none. The index has the first 255 bytes. This
+    /// and the next three values are `None` in a library of version 1.0, whose index lacks them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub license: Option<String>,
+    /// Who made the texture; `None` if it does not say. The index has the first 255 bytes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub author: Option<String>,
+    /// Physical quantity of the texture's samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quantity: Option<Quantity>,
+    /// Felt difference between the texture and its recordings, RMS over third-octave bands, at the
+    /// worst condition, decibels; `None` if the writer did not know it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub felt_error_rms_db: Option<f64>,
     /// Size of the texture's `.htex` file, bytes.
     pub bytes: u64,
     /// BLAKE3 of the texture's `.htex` file; hexadecimal in JSON.
@@ -67,6 +81,9 @@ pub(crate) struct TexturePlace {
     /// Objects that the texture shares with other textures, in the order in which a reader inserts
     /// them into the texture's own bytes.
     pub cuts: Vec<Cut>,
+    /// The leaf page of the entry, and the entry's number in it.
+    pub leaf: usize,
+    pub row: usize,
 }
 
 /// A shared object inside a texture.

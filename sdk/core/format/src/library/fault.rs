@@ -49,6 +49,11 @@ pub(crate) fn leaf_place(leaf: usize) -> String {
     format!("/leaves/{leaf}")
 }
 
+/// Returns the place of the page with the spectra of a leaf, as written in findings.
+pub(crate) fn spectra_place(leaf: usize) -> String {
+    format!("/spectra/{leaf}")
+}
+
 /// Returns the place of an entry, as written in findings.
 pub(crate) fn entry_place(leaf: usize, entry: usize) -> String {
     format!("/leaves/{leaf}/entries/{entry}")

@@ -15,7 +15,7 @@ pub const EXTENSION: &str = "htexlib";
 
 pub(crate) const HEADER_BYTES: usize = 128;
 pub(crate) const MAJOR: u16 = 1;
-pub(crate) const MINOR: u16 = 0;
+pub(crate) const MINOR: u16 = 1;
 
 /// Place of the header, as written in findings.
 const PLACE: &str = "/header";
@@ -31,7 +31,7 @@ pub(crate) struct Header {
     pub root: Range<u64>,
     /// The leaf pages of the index.
     pub leaves: Range<u64>,
-    /// Objects that several textures share.
+    /// Objects that several textures share, and after them the spectra.
     pub shared: Range<u64>,
     /// The textures' own bytes.
     pub payload: Range<u64>,
@@ -70,7 +70,7 @@ impl Header {
     fn fields(bytes: &[u8; HEADER_BYTES]) -> Result<Self, Fault> {
         let minor = u16_at(bytes, 10);
         // A newer minor version may give the reserved bytes a meaning.
-        if u32_at(bytes, 12) != 0 && minor == MINOR {
+        if u32_at(bytes, 12) != 0 && minor <= MINOR {
             return Err(invalid("the reserved bytes 12 to 15 are not 0"));
         }
         let mut end = HEADER_BYTES as u64;

@@ -5,16 +5,19 @@ use std::ops::Range;
 
 use htex_base::finding::{Finding, Findings};
 
+use crate::library::coarse_spectrum::CoarseSpectrum;
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
-use crate::library::fault::{Fault, leaf_place};
+use crate::library::fault::{Fault, leaf_place, spectra_place};
 use crate::library::header::{Header, MAJOR, MINOR};
 use crate::library::leaf::LeafReader;
 use crate::library::limits::Limits;
+use crate::library::metadata::LibraryMetadata;
 use crate::library::page;
 use crate::library::ratio::Ratio;
 use crate::library::root::Root;
 use crate::library::rules as rule;
+use crate::library::spectra::read_spectra;
 
 /// The header and the root page of an open library.
 ///
@@ -49,6 +52,11 @@ impl Index {
         &self.root.name
     }
 
+    /// Returns what the library says about itself.
+    pub fn metadata(&self) -> &LibraryMetadata {
+        &self.root.metadata
+    }
+
     /// Returns the number of textures.
     #[allow(clippy::len_without_is_empty)] // The library has `is_empty`.
     pub fn len(&self) -> u64 {
@@ -59,6 +67,17 @@ impl Index {
     /// hash contain the same textures with the same names.
     pub fn blake3(&self) -> [u8; 32] {
         self.header.index_blake3
+    }
+
+    /// Returns the minor version of the library's format. An index of version 1.0 has no licences,
+    /// authors, quantities, felt differences and spectra.
+    pub fn minor_version(&self) -> u16 {
+        self.header.minor
+    }
+
+    /// Returns the size of the library's file, bytes.
+    pub fn file_bytes(&self) -> u64 {
+        self.header.payload.end
     }
 
     /// Returns all findings that are not errors, such as a newer minor version.
@@ -92,6 +111,43 @@ impl Index {
     /// Returns the byte range of a leaf page in the file; `None` if there is no such page.
     pub fn leaf_range(&self, leaf: usize) -> Option<Range<u64>> {
         self.root.leaf(leaf)
+    }
+
+    /// Returns the byte range in the file of the spectra of a leaf page's entries; `None` if no entry
+    /// has one.
+    pub fn spectra_range(&self, leaf: usize) -> Option<Range<u64>> {
+        self.root.spectra(leaf)
+    }
+
+    /// Decodes the spectra of a leaf page's entries from their bytes. The spectra have the order of
+    /// the entries.
+    ///
+    /// # Errors
+    /// Returns [`LibraryError::Invalid`] if the page breaks a rule.
+    pub fn read_spectra(
+        &self,
+        leaf: usize,
+        bytes: &[u8],
+    ) -> Result<Vec<Option<CoarseSpectrum>>, LibraryError> {
+        Ok(self.spectra(leaf, bytes)?)
+    }
+
+    pub(crate) fn spectra(
+        &self,
+        leaf: usize,
+        bytes: &[u8],
+    ) -> Result<Vec<Option<CoarseSpectrum>>, Fault> {
+        let place = spectra_place(leaf);
+        let page = page::unpack(bytes, self.limits.leaf_bytes, &place)?;
+        read_spectra(&page).map_err(|m| Fault::page(&place, m))
+    }
+
+    pub(crate) fn spectra_blake3(&self) -> [u8; 32] {
+        self.root.spectra_blake3
+    }
+
+    pub(crate) fn spectra_start(&self) -> u64 {
+        self.root.spectra_start()
     }
 
     /// Decodes the entries of a leaf page from its bytes. The entries are sorted by name.

@@ -2,22 +2,23 @@
 
 use std::io::{self, Write};
 
-use crate::library::encode::Pages;
+use crate::library::encode::{PackedIndex, Pages};
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::header::{HEADER_BYTES, Header, MINOR};
 use crate::library::leaf::length;
 use crate::library::limits::Limits;
-use crate::library::packer::PendingTexture;
+use crate::library::metadata::LibraryMetadata;
+use crate::library::packer::{PendingTexture, Words};
 use crate::library::pieces::{Piece, Source};
 use crate::library::sharing::Sharing;
 
-/// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
+/// Encodes the index. Returns the header, the pages, and the total size of all textures.
 pub(crate) fn indexed(
-    name: &str,
+    (name, metadata): (&str, &LibraryMetadata),
     textures: &[(&String, &PendingTexture)],
     sharing: &Sharing,
-) -> (Header, Vec<u8>, u64) {
+) -> (Header, PackedIndex, u64) {
     let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
     // Own bytes of the textures follow each other in the order of names. `write` copies them in the
     // same order.
@@ -25,19 +26,25 @@ pub(crate) fn indexed(
         let place = sharing.place(&texture.pieces, payload);
         payload = place.own.end;
         total += texture.bytes;
-        pages.add(Entry {
+        let Words { tags, models, license, author } = (*texture.words).clone();
+        let entry = Entry {
             name: (*name).clone(),
-            tags: texture.words.tags.clone(),
-            models: texture.words.models.clone(),
+            tags,
+            models,
             conditions: texture.conditions,
             contact: texture.contact,
             law: texture.law,
+            license,
+            author,
+            quantity: Some(texture.quantity),
+            felt_error_rms_db: texture.description.felt_error_rms_db,
             bytes: texture.bytes,
             blake3: texture.blake3,
             place,
-        });
+        };
+        pages.add(entry, texture.description.spectrum);
     }
-    let (root, leaves, leaf_count) = pages.finish(name);
+    let index = pages.finish(name, metadata);
     // The parts follow each other without gaps, so each begins where the one before ends.
     let mut end = HEADER_BYTES as u64;
     let mut part = |bytes: u64| {
@@ -45,16 +52,17 @@ pub(crate) fn indexed(
         end += bytes;
         start..end
     };
-    let index = [root.as_slice(), &leaves].concat();
+    let mut hash = blake3::Hasher::new();
+    hash.update(&index.root).update(&index.leaves);
     let header = Header {
         minor: MINOR,
-        root: part(root.len() as u64),
-        leaves: part(leaves.len() as u64),
-        shared: part(sharing.bytes()),
+        root: part(index.root.len() as u64),
+        leaves: part(index.leaves.len() as u64),
+        shared: part(sharing.bytes() + index.spectra.len() as u64),
         payload: part(payload),
         entries: textures.len() as u64,
-        leaf_count,
-        index_blake3: *blake3::hash(&index).as_bytes(),
+        leaf_count: index.leaf_count,
+        index_blake3: *hash.finalize().as_bytes(),
     };
     (header, index, total)
 }
@@ -94,19 +102,30 @@ pub(crate) fn check_limits(name: &str, header: &Header, total: u64) -> Result<()
 pub(crate) fn write(
     target: &mut impl Write,
     header: &Header,
-    index: &[u8],
+    index: &PackedIndex,
     stores: &mut [&mut dyn Source],
     sharing: &Sharing,
     textures: &[(&String, &PendingTexture)],
 ) -> io::Result<()> {
     target.write_all(&header.to_bytes())?;
-    target.write_all(index)?;
+    target.write_all(&index.root)?;
+    target.write_all(&index.leaves)?;
     // `sharing` assigned the places of the objects in this order, and `index` the places of the
     // textures.
     let own = textures.iter().flat_map(|(_, texture)| sharing.own_pieces(&texture.pieces));
-    let mut pieces = sharing.shared().cloned().chain(own);
-    // Pieces that follow each other in their store, as most of another library do, are copied at
-    // once.
+    copy(sharing.shared().cloned(), stores, target)?;
+    target.write_all(&index.spectra)?;
+    copy(own, stores, target)?;
+    target.flush()
+}
+
+/// Copies pieces. Those that follow each other in their store, as most of another library do, are
+/// copied at once.
+fn copy(
+    mut pieces: impl Iterator<Item = Piece>,
+    stores: &mut [&mut dyn Source],
+    target: &mut impl Write,
+) -> io::Result<()> {
     let mut run = Piece { store: 0, range: 0..0 };
     loop {
         let next = pieces.next();
@@ -122,7 +141,7 @@ pub(crate) fn write(
         }
         match next {
             Some(next) => run = next,
-            None => return target.flush(),
+            None => return Ok(()),
         }
     }
 }

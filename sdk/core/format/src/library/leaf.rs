@@ -4,7 +4,7 @@
 //! columns can. The writer chooses a page's entries by their unpacked size, so that it need not
 //! compress a page several times to find its size.
 
-use crate::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
+use crate::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT, Quantity};
 
 use crate::library::entry::{Conditions, Cut, Entry, Interval, TexturePlace};
 use crate::library::facts::MOST_WORDS;
@@ -36,6 +36,17 @@ pub(crate) const CONTACTS: [Contact; 3] = [Contact::Finger, Contact::Tool, Conta
 pub(crate) const SOURCES: [ExponentSource; 3] =
     [ExponentSource::Measured, ExponentSource::Given, ExponentSource::Assumed];
 
+/// The quantities, in the order of their numbers in the index.
+pub(crate) const QUANTITIES: [Quantity; 5] = [
+    Quantity::LateralForce,
+    Quantity::NormalForce,
+    Quantity::Acceleration,
+    Quantity::Velocity,
+    Quantity::Displacement,
+];
+/// Largest felt difference in the index, hundredths of a decibel.
+pub(crate) const MOST_FELT: u64 = 100_000;
+
 pub(crate) struct LeafReader<'a> {
     pub leaf: usize,
     pub root: &'a Root,
@@ -52,6 +63,16 @@ struct Columns {
     laws: Vec<(Contact, Law)>,
     places: Vec<TexturePlace>,
     hashes: Vec<[u8; 32]>,
+    newer: Vec<Newer>,
+}
+
+/// The values of an entry that the index has since version 1.1.
+#[derive(Clone, Default)]
+struct Newer {
+    license: Option<String>,
+    author: Option<String>,
+    quantity: Option<Quantity>,
+    felt_error_rms_db: Option<f64>,
 }
 
 impl LeafReader<'_> {
@@ -67,12 +88,29 @@ impl LeafReader<'_> {
             .zip(columns.tags)
             .zip(columns.models.into_iter().zip(columns.conditions))
             .zip(columns.laws)
-            .zip(columns.places.into_iter().zip(columns.hashes));
-        let entries = rows.enumerate().map(|(i, row)| {
+            .zip(columns.places.into_iter().zip(columns.hashes))
+            .zip(columns.newer);
+        let entries = rows.enumerate().map(|(i, (row, newer))| {
             let ((((name, tags), (models, conditions)), law), (place, blake3)) = row;
             let (contact, law) = law;
             let bytes = self.check_place(i, &name, &place)?;
-            Ok(Entry { name, tags, conditions, contact, law, models, bytes, blake3, place })
+            let place = TexturePlace { leaf: self.leaf, row: i, ..place };
+            let Newer { license, author, quantity, felt_error_rms_db } = newer;
+            Ok(Entry {
+                name,
+                tags,
+                conditions,
+                contact,
+                law,
+                models,
+                license,
+                author,
+                quantity,
+                felt_error_rms_db,
+                bytes,
+                blake3,
+                place,
+            })
         });
         entries.collect()
     }
@@ -91,9 +129,14 @@ impl LeafReader<'_> {
             laws: column(cursor, count, law)?,
             places: places(cursor, count)?,
             hashes: column(cursor, count, Cursor::array)?,
+            newer: if self.header.minor > 0 {
+                newer(cursor, count)?
+            } else {
+                vec![Newer::default(); count]
+            },
         };
         // A newer minor version may append values, which are ignored.
-        if self.header.minor == MINOR && cursor.rest() > 0 {
+        if self.header.minor <= MINOR && cursor.rest() > 0 {
             return Err(cursor.malformed("bytes follow the last value"));
         }
         Ok(columns)
@@ -123,7 +166,9 @@ impl LeafReader<'_> {
 
     /// Checks that a texture's bytes lie within the file. Returns the texture's size in bytes.
     fn check_place(&self, entry: usize, name: &str, place: &TexturePlace) -> Result<u64, Fault> {
-        let (payload, shared) = (length(&self.header.payload), length(&self.header.shared));
+        let payload = length(&self.header.payload);
+        // The spectra are behind the objects.
+        let shared = self.root.spectra_start().saturating_sub(self.header.shared.start);
         let own = length(&place.own);
         let outside = |what: &str| {
             let message = format!("{name}: {what}; pack the library again");
@@ -258,7 +303,40 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Wi
     })?;
     let cuts = column(cursor, count, cuts)?;
     let places = owns.into_iter().zip(cuts);
-    Ok(places.map(|(own, cuts)| TexturePlace { own, cuts }).collect())
+    Ok(places.map(|(own, cuts)| TexturePlace { own, cuts, ..TexturePlace::default() }).collect())
+}
+
+/// Reads the columns that the index has since version 1.1.
+fn newer(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<Newer>, WireError> {
+    let words = words(cursor)?;
+    let one = |cursor: &mut Cursor<'_>| {
+        let number = cursor.varint()?;
+        let Some(index) = number.checked_sub(1) else { return Ok(None) };
+        let word = usize::try_from(index).ok().and_then(|index| words.get(index));
+        let word = word.ok_or(cursor.malformed("a licence or an author does not exist"))?;
+        Ok(Some((*word).to_owned()))
+    };
+    let licenses = column(cursor, count, one)?;
+    let authors = column(cursor, count, one)?;
+    let quantities = column(cursor, count, |cursor| {
+        let quantity = QUANTITIES.get(usize::from(cursor.byte()?));
+        quantity.copied().ok_or(cursor.malformed("a quantity does not exist"))
+    })?;
+    let felt = column(cursor, count, |cursor| {
+        let number = cursor.varint()?;
+        if number > MOST_FELT + 1 {
+            return Err(cursor.malformed("a felt difference exceeds 1000 dB"));
+        }
+        Ok(number.checked_sub(1).map(|hundredths| hundredths as f64 / 100.0))
+    })?;
+    let rows = licenses.into_iter().zip(authors).zip(quantities.into_iter().zip(felt));
+    let rows = rows.map(|((license, author), (quantity, felt_error_rms_db))| Newer {
+        license,
+        author,
+        quantity: Some(quantity),
+        felt_error_rms_db,
+    });
+    Ok(rows.collect())
 }
 
 fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, WireError> {

@@ -41,6 +41,8 @@
 #![forbid(unsafe_code)]
 
 mod address;
+mod coarse_spectrum;
+mod description;
 #[cfg(feature = "write")]
 mod encode;
 mod entry;
@@ -57,6 +59,7 @@ mod limits;
 mod located;
 #[cfg(not(target_family = "wasm"))]
 mod many;
+mod metadata;
 mod name;
 #[cfg(feature = "storage")]
 mod name_pattern;
@@ -66,14 +69,18 @@ mod packer;
 mod page;
 #[cfg(feature = "write")]
 mod pieces;
+#[cfg(feature = "write")]
+mod prepared;
 mod query;
 mod ratio;
 mod reader;
 mod root;
 mod rules;
+mod search;
 #[cfg(feature = "write")]
 mod sharing;
 mod source;
+mod spectra;
 #[cfg(feature = "write")]
 mod spool;
 mod validate;
@@ -82,6 +89,8 @@ mod wire;
 mod writer;
 
 pub use address::split_address;
+pub use coarse_spectrum::CoarseSpectrum;
+pub use description::Description;
 pub use entry::{Conditions, Entry, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};
@@ -89,16 +98,20 @@ pub use index::Index;
 pub use limits::Limits;
 #[cfg(feature = "storage")]
 pub use located::LibraryFile;
+pub use metadata::LibraryMetadata;
 pub use name::{InvalidName, Names, check_name};
 #[cfg(feature = "storage")]
 pub use name_pattern::NamePattern;
 pub use opening::{FIRST_READ, Opening, Progress};
 #[cfg(feature = "write")]
 pub use packer::PackSummary;
+#[cfg(feature = "write")]
+pub use prepared::{Describe, PreparedTexture};
 pub use query::Query;
 pub use ratio::Ratio;
-pub use reader::{Entries, Library};
+pub use reader::{Described, Entries, Library};
 pub use rules::{RULES, findings_page};
+pub use search::{Duplicate, Similar};
 pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};
 #[cfg(feature = "write")]

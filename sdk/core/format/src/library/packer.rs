@@ -11,15 +11,18 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::{Asset, Contact, Law};
+use crate::{Contact, Law, Quantity, ReadError};
 
+use crate::library::description::Description;
 use crate::library::entry::{Conditions, Entry};
 use crate::library::error::LibraryError;
 use crate::library::facts::{Facts, MOST_WORDS};
 use crate::library::layout::{check_limits, indexed, is_beyond_ratio, write};
 use crate::library::leaf::MOST_CUTS;
+use crate::library::metadata::LibraryMetadata;
 use crate::library::name::{check_library_name, check_name, file_key};
 use crate::library::pieces::{Objects, Piece, Pieces, Source, modules};
+use crate::library::prepared::{Describe, PreparedTexture};
 use crate::library::reader::Library;
 use crate::library::sharing::Sharing;
 use crate::library::source::LibrarySource;
@@ -44,20 +47,25 @@ pub(crate) struct Packer<S> {
     /// The name of each texture by its [`file_key`], to find names that denote the same file on
     /// some systems.
     files: BTreeMap<[u8; 16], String>,
-    /// Distinct sets of tags and models. Many textures have the same set, so each distinct set is
+    /// Distinct sets of words. Many textures have the same set, so each distinct set is
     /// in memory only once.
     words: BTreeSet<Arc<Words>>,
     /// Whether textures without a licence may be packed.
     pub(crate) allows_unlicensed: bool,
+    /// Computes the descriptions of textures that are added without one.
+    pub(crate) describe: Option<Describe>,
+    pub(crate) metadata: LibraryMetadata,
     /// Whether an added texture embeds a module that no packed library shares.
     has_new_modules: bool,
 }
 
-/// Tags and models of a texture.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// Texts of a texture in the index, except its name.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Words {
     pub tags: Vec<String>,
     pub models: Vec<String>,
+    pub license: Option<String>,
+    pub author: Option<String>,
 }
 
 /// The data in memory about a texture that was added.
@@ -66,6 +74,8 @@ pub(crate) struct PendingTexture {
     pub conditions: Conditions,
     pub contact: Contact,
     pub law: Law,
+    pub quantity: Quantity,
+    pub description: Description,
     pub is_licensed: bool,
     pub bytes: u64,
     pub blake3: [u8; 32],
@@ -107,6 +117,8 @@ impl<S: Store> Packer<S> {
             files: BTreeMap::new(),
             words: BTreeSet::new(),
             allows_unlicensed: false,
+            describe: None,
+            metadata: LibraryMetadata::default(),
             has_new_modules: false,
         })
     }
@@ -114,33 +126,40 @@ impl<S: Store> Packer<S> {
     /// Adds a texture; see [`crate::library::Writer::add`].
     pub(crate) fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.check(name)?;
-        let blake3 = *blake3::hash(asset).as_bytes();
-        if let Some(known) = self.by_hash.get(&blake3) {
+        // An equal texture is not read again.
+        if let Some(known) = self.by_hash.get(blake3::hash(asset).as_bytes()) {
             let known = *known;
             self.use_again(known, || Ok(asset.to_vec()))?;
             self.keep(name, known);
             return Ok(());
         }
-        let read = Asset::from_bytes(asset).map_err(|error| LibraryError::Asset {
-            name: name.to_owned(),
-            error: Box::new(error),
-        })?;
-        let facts = Facts::new(&read.manifest);
+        let prepared = PreparedTexture::new(asset.to_vec(), self.describe);
+        self.add_prepared(name, prepared.map_err(LibraryError::of_asset(name))?)
+    }
+
+    /// Adds a texture; see [`crate::library::Writer::add_prepared`].
+    pub(crate) fn add_prepared(
+        &mut self,
+        name: &str,
+        texture: PreparedTexture,
+    ) -> Result<(), LibraryError> {
+        self.check(name)?;
+        let PreparedTexture { bytes, blake3, facts, description } = texture;
+        if let Some(known) = self.by_hash.get(&blake3) {
+            let known = *known;
+            self.use_again(known, || Ok(bytes))?;
+            // So that the file does not depend on the order of the textures.
+            let texture = &mut self.textures[known as usize];
+            texture.description = texture.description.or(description);
+            self.keep(name, known);
+            return Ok(());
+        }
         check_words(name, "tags", &facts.tags)?;
         check_words(name, "models", &facts.models)?;
-        let pieces = self.spooled(asset).map_err(LibraryError::unchanged(&self.path))?;
+        let pieces = self.spooled(&bytes).map_err(LibraryError::unchanged(&self.path))?;
         self.has_new_modules |= !pieces.objects.is_empty();
-        let added = PendingTexture {
-            words: self.common_words(facts.tags, facts.models),
-            conditions: facts.conditions,
-            contact: facts.contact,
-            law: facts.law,
-            is_licensed: read.manifest.license.is_some(),
-            bytes: asset.len() as u64,
-            blake3,
-            pieces,
-        };
-        self.insert(name, added);
+        let bytes = bytes.len() as u64;
+        self.insert(name, facts, description, (bytes, blake3), pieces);
         Ok(())
     }
 
@@ -186,18 +205,8 @@ impl<S: Store> Packer<S> {
             }
             let own = payload + entry.place.own.start..payload + entry.place.own.end;
             let pieces = Pieces { own: Piece { store, range: own }, objects: objects.into() };
-            let added = PendingTexture {
-                words: self.common_words(entry.tags, entry.models),
-                conditions: entry.conditions,
-                contact: entry.contact,
-                law: entry.law,
-                // Checked when the library was packed.
-                is_licensed: true,
-                bytes: entry.bytes,
-                blake3: entry.blake3,
-                pieces,
-            };
-            self.insert(&name, added);
+            let (facts, description) = self.stated(&library, &entry)?;
+            self.insert(&name, facts, description, (entry.bytes, entry.blake3), pieces);
         }
         self.libraries.push(Box::new(library));
         Ok(())
@@ -216,7 +225,43 @@ impl<S: Store> Packer<S> {
         }
     }
 
-    fn insert(&mut self, name: &str, texture: PendingTexture) {
+    /// Returns what a library states about a texture. The index of a library of version 1.0 does not
+    /// state everything, so that such a texture is read.
+    fn stated<L: LibrarySource>(
+        &self,
+        library: &Library<L>,
+        entry: &Entry,
+    ) -> Result<(Facts, Description), LibraryError> {
+        let Some(facts) = Facts::of_entry(entry) else {
+            let bytes = library.read(entry)?;
+            let read = PreparedTexture::new(bytes, self.describe);
+            let read = read.map_err(LibraryError::of_asset(&entry.name))?;
+            return Ok((read.facts, read.description));
+        };
+        Ok((facts, library.description(entry)?))
+    }
+
+    fn insert(
+        &mut self,
+        name: &str,
+        facts: Facts,
+        description: Description,
+        (bytes, blake3): (u64, [u8; 32]),
+        pieces: Pieces,
+    ) {
+        let Facts { tags, models, license, author, .. } = facts;
+        let texture = PendingTexture {
+            is_licensed: license.is_some(),
+            words: self.common_words(Words { tags, models, license, author }),
+            conditions: facts.conditions,
+            contact: facts.contact,
+            law: facts.law,
+            quantity: facts.quantity,
+            description,
+            bytes,
+            blake3,
+            pieces,
+        };
         let index = self.textures.len() as u32;
         self.by_hash.insert(texture.blake3, index);
         self.textures.push(texture);
@@ -338,10 +383,9 @@ impl<S: Store> Packer<S> {
         Ok(asset)
     }
 
-    /// Returns these tags and models in one allocation. All textures with the same tags and models
-    /// share it.
-    fn common_words(&mut self, tags: Vec<String>, models: Vec<String>) -> Arc<Words> {
-        let words = Arc::new(Words { tags, models });
+    /// Returns these words in one allocation. All textures with the same words share it.
+    fn common_words(&mut self, words: Words) -> Arc<Words> {
+        let words = Arc::new(words);
         if let Some(known) = self.words.get(&words) {
             return known.clone();
         }
@@ -368,17 +412,21 @@ impl<S: Store> Packer<S> {
         // licence.
         self.check_licences()?;
         self.find_modules()?;
-        let Self { path, name, spool, libraries, objects, textures, added, .. } = self;
+        self.metadata.check().map_err(|problem| LibraryError::Limit {
+            name: format!("library {:?}", self.name),
+            problem,
+        })?;
+        let Self { path, name, spool, libraries, objects, textures, added, metadata, .. } = self;
         let mut spool = spool.finish().map_err(LibraryError::unchanged(&path))?;
         let mut sharing = Sharing::new(objects.all, true);
         let textures: Vec<(&String, &PendingTexture)> =
             added.iter().map(|(name, texture)| (name, &textures[*texture as usize])).collect();
-        let (mut header, mut index, total) = indexed(&name, &textures, &sharing);
+        let (mut header, mut index, total) = indexed((&name, &metadata), &textures, &sharing);
         // Readers refuse a small file that unpacks to a huge folder. Then equal textures are stored
         // several times.
         if is_beyond_ratio(&header, total) {
             sharing = sharing.without_parts();
-            (header, index, _) = indexed(&name, &textures, &sharing);
+            (header, index, _) = indexed((&name, &metadata), &textures, &sharing);
         }
         check_limits(&name, &header, total)?;
         let libraries = libraries.into_iter();
@@ -399,6 +447,11 @@ impl<S: Store> Packer<S> {
 }
 
 impl LibraryError {
+    /// Turns an error of reading an asset into a library error that names the texture.
+    pub(crate) fn of_asset(name: &str) -> impl FnOnce(ReadError) -> Self {
+        move |error| Self::Asset { name: name.to_owned(), error: Box::new(error) }
+    }
+
     /// Turns an error of the system into a library error that names the file and says that it is
     /// unchanged.
     pub(crate) fn unchanged(path: &Path) -> impl FnOnce(io::Error) -> Self {

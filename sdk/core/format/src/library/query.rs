@@ -1,6 +1,6 @@
 //! Searches a library's index for textures with given properties.
 
-use crate::Condition;
+use crate::{Condition, Quantity};
 
 use crate::library::entry::{Entry, Interval};
 
@@ -32,6 +32,15 @@ pub struct Query {
     pub force_n: Option<f64>,
     /// Id of a model that describes the texture, or the last part of the id.
     pub model: Option<String>,
+    /// Licence that the texture must have, ignoring case. `*` stands for any text, as in `CC*`.
+    pub license: Option<String>,
+    /// Author that the texture must have, as for the licence.
+    pub author: Option<String>,
+    /// Quantity that the texture must have.
+    pub quantity: Option<Quantity>,
+    /// Largest felt difference between the texture and its recordings, decibels. A texture whose
+    /// felt difference is not known does not match.
+    pub felt_error_rms_db: Option<f64>,
 }
 
 impl Query {
@@ -49,6 +58,21 @@ impl Query {
             && is_among(self.speed_mm_s, conditions.speed_mm_s)
             && is_among(self.force_n, conditions.force_n)
             && self.model.as_ref().is_none_or(|model| has_model(entry, model))
+            && is_like(self.license.as_ref(), entry.license.as_ref())
+            && is_like(self.author.as_ref(), entry.author.as_ref())
+            && self.quantity.is_none_or(|quantity| entry.quantity == Some(quantity))
+            && self
+                .felt_error_rms_db
+                .is_none_or(|most| entry.felt_error_rms_db.is_some_and(|felt| felt <= most))
+    }
+
+    /// Returns whether the query asks for a property that the index of a library of version 1.0
+    /// does not have.
+    pub fn needs_version_1_1(&self) -> bool {
+        self.license.is_some()
+            || self.author.is_some()
+            || self.quantity.is_some()
+            || self.felt_error_rms_db.is_some()
     }
 }
 
@@ -56,6 +80,23 @@ impl Query {
 fn caseless(text: &str) -> String {
     // Not lower case, which keeps `ß` and `ss` apart, and the two small forms of sigma.
     text.to_uppercase()
+}
+
+/// Returns whether a text matches a pattern. A missing text matches only `*`.
+fn is_like(pattern: Option<&String>, text: Option<&String>) -> bool {
+    let Some(pattern) = pattern else { return true };
+    let text = caseless(text.map_or("", String::as_str));
+    let pattern = caseless(pattern);
+    let Some((start, rest)) = pattern.split_once('*') else { return pattern == text };
+    let Some(mut text) = text.strip_prefix(start) else { return false };
+    // Between two `*`, the first occurrence leaves the most text for what follows.
+    let mut parts: Vec<&str> = rest.split('*').collect();
+    let end = parts.pop().unwrap_or_default();
+    for part in parts {
+        let Some((_, after)) = text.split_once(part) else { return false };
+        text = after;
+    }
+    text.ends_with(end)
 }
 
 fn is_among(asked: Option<f64>, known: Option<Interval>) -> bool {
@@ -67,4 +108,18 @@ fn is_among(asked: Option<f64>, known: Option<Interval>) -> bool {
 fn has_model(entry: &Entry, model: &str) -> bool {
     let is = |id: &String| id == model || id.rsplit('.').next() == Some(model);
     entry.models.iter().any(is)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_match_any_text_at_their_stars() {
+        let is = |pattern: &str, text: &str| is_like(Some(&pattern.into()), Some(&text.into()));
+        assert!(is("cc*", "CC-BY-4.0") && is("*", "") && is("*by*4.0", "CC-BY-4.0"));
+        assert!(is("*a*a", "aXa") && is("CC0-1.0", "cc0-1.0") && is("a**b", "ab"));
+        assert!(!is("cc*", "MIT") && !is("*a*a", "a") && !is("a*a", "a") && !is("CC0", "CC0-1.0"));
+        assert!(is_like(None, None) && !is_like(Some(&"CC*".into()), None));
+    }
 }

@@ -6,10 +6,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_base::finding::Finding;
 
+use crate::library::coarse_spectrum::CoarseSpectrum;
+use crate::library::description::Description;
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::index::Index;
 use crate::library::limits::Limits;
+use crate::library::metadata::LibraryMetadata;
 use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
@@ -38,6 +41,14 @@ pub struct Library<S = LocalFile> {
     source: S,
     index: Index,
     recent: Mutex<Option<Leaf>>,
+    recent_spectra: Mutex<Option<Spectra>>,
+}
+
+/// The spectra of a leaf page's entries.
+#[derive(Debug, Clone)]
+struct Spectra {
+    leaf: usize,
+    spectra: Arc<Vec<Option<CoarseSpectrum>>>,
 }
 
 /// The entries of a leaf page.
@@ -79,7 +90,12 @@ impl<S: LibrarySource> Library<S> {
             match opening.give(&bytes, length)? {
                 Progress::More(more) => opening = more,
                 Progress::Open(index) => {
-                    return Ok(Self { source, index, recent: Mutex::new(None) });
+                    return Ok(Self {
+                        source,
+                        index,
+                        recent: Mutex::default(),
+                        recent_spectra: Mutex::default(),
+                    });
                 }
             }
         }
@@ -88,6 +104,11 @@ impl<S: LibrarySource> Library<S> {
     /// Returns the name of the library; it may be empty.
     pub fn name(&self) -> &str {
         self.index.name()
+    }
+
+    /// Returns what the library says about itself.
+    pub fn metadata(&self) -> &LibraryMetadata {
+        self.index.metadata()
     }
 
     /// Returns the number of textures.
@@ -199,10 +220,41 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
+    /// Reads what the library states about a texture besides its manifest. The entry must come from
+    /// this library. Reads the page with the spectra of its leaf, unless it is in the cache.
+    ///
+    /// # Errors
+    /// If the page cannot be read or breaks a rule.
+    pub fn description(&self, entry: &Entry) -> Result<Description, LibraryError> {
+        let spectra = self.spectra(entry.place.leaf)?;
+        Ok(Description {
+            spectrum: spectra.get(entry.place.row).copied().flatten(),
+            felt_error_rms_db: entry.felt_error_rms_db,
+        })
+    }
+
+    /// Returns the spectra of a leaf page's entries; no spectra if the page has none.
+    fn spectra(&self, leaf: usize) -> Result<Arc<Vec<Option<CoarseSpectrum>>>, LibraryError> {
+        let Some(range) = self.index.spectra_range(leaf) else { return Ok(Arc::default()) };
+        let recent = || self.recent_spectra.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = recent().as_ref().filter(|known| known.leaf == leaf) {
+            return Ok(known.spectra.clone());
+        }
+        let spectra = Arc::new(self.index.read_spectra(leaf, &self.read_range(range)?)?);
+        *recent() = Some(Spectra { leaf, spectra: spectra.clone() });
+        Ok(spectra)
+    }
+
     /// Returns all entries, sorted by name. Many pages are read at once, and decoded one at a time.
     pub fn entries(&self) -> Entries<'_, S> {
-        let ahead = Ahead { start: 0, bytes: Vec::new() };
+        let ahead = Ahead::default();
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0, ahead }
+    }
+
+    /// Returns all entries with their descriptions, sorted by name. Many pages are read at once.
+    pub fn described(&self) -> Described<'_, S> {
+        let (entries, ahead) = (self.entries(), Ahead::default());
+        Described { entries, ahead, spectra: Vec::new(), leaf: None }
     }
 
     /// Returns the entries of a leaf page. Reads the page unless it is the page in the cache.
@@ -263,7 +315,7 @@ pub struct Entries<'a, S = LocalFile> {
 }
 
 /// Bytes of the index that were read at once.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Ahead {
     /// Offset in the file.
     start: u64,
@@ -278,21 +330,82 @@ impl Ahead {
     }
 }
 
+impl<S: LibrarySource> Library<S> {
+    /// Returns the bytes of a page. Reads the pages after it, too. `range` returns the place of each
+    /// page in the file; the pages follow each other, and a page without a place is skipped.
+    fn page<'a>(
+        &self,
+        ahead: &'a mut Ahead,
+        number: usize,
+        range: impl Fn(usize) -> Option<Range<u64>>,
+    ) -> Result<&'a [u8], LibraryError> {
+        let page = range(number).unwrap_or_default();
+        if ahead.get(&page).is_none() {
+            let ranges = (number + 1..self.index.leaves()).filter_map(range);
+            let ends = ranges.map(|range| range.end);
+            let end = ends.take_while(|end| end - page.start <= READ_AHEAD).last();
+            let all = page.start..end.unwrap_or(page.end);
+            *ahead = Ahead { start: all.start, bytes: self.read_range(all)? };
+        }
+        Ok(ahead.get(&page).unwrap_or_default())
+    }
+}
+
 impl<S: LibrarySource> Entries<'_, S> {
     /// Returns the entries of a leaf page. Reads the pages after it, too.
     fn leaf(&mut self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
         let index = &self.library.index;
-        let range = index.leaf_range(number).unwrap_or_default();
-        if self.ahead.get(&range).is_none() {
-            let ranges = (number + 1..).map_while(|next| index.leaf_range(next));
-            let ends = ranges.map(|range| range.end);
-            let end = ends.take_while(|end| end - range.start <= READ_AHEAD).last();
-            let range = range.start..end.unwrap_or(range.end);
-            self.ahead =
-                Ahead { start: range.start, bytes: self.library.read_range(range.clone())? };
-        }
-        let page = self.ahead.get(&range).unwrap_or_default();
+        let page = self.library.page(&mut self.ahead, number, |leaf| index.leaf_range(leaf))?;
         index.read_leaf(number, page).map(Arc::new)
+    }
+}
+
+/// The entries of a library with their descriptions, sorted by name. The iterator ends after an
+/// error.
+#[derive(Debug)]
+pub struct Described<'a, S = LocalFile> {
+    entries: Entries<'a, S>,
+    ahead: Ahead,
+    spectra: Vec<Option<CoarseSpectrum>>,
+    /// The leaf of these spectra.
+    leaf: Option<usize>,
+}
+
+impl<S: LibrarySource> Described<'_, S> {
+    fn description(&mut self, entry: &Entry) -> Result<Description, LibraryError> {
+        let (library, leaf) = (self.entries.library, entry.place.leaf);
+        if self.leaf != Some(leaf) {
+            let index = &library.index;
+            self.spectra = match index.spectra_range(leaf) {
+                Some(_) => {
+                    let range = |leaf| index.spectra_range(leaf);
+                    index.read_spectra(leaf, library.page(&mut self.ahead, leaf, range)?)?
+                }
+                None => Vec::new(),
+            };
+            self.leaf = Some(leaf);
+        }
+        Ok(Description {
+            spectrum: self.spectra.get(entry.place.row).copied().flatten(),
+            felt_error_rms_db: entry.felt_error_rms_db,
+        })
+    }
+}
+
+impl<S: LibrarySource> Iterator for Described<'_, S> {
+    type Item = Result<(Entry, Description), LibraryError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let entry = match self.entries.next()? {
+            Ok(entry) => entry,
+            Err(error) => return Some(Err(error)),
+        };
+        let described = self.description(&entry);
+        if described.is_err() {
+            self.entries.next_leaf = self.entries.library.index.leaves();
+            self.entries.next = self.entries.entries.len();
+        }
+        Some(described.map(|description| (entry, description)))
     }
 }
 

@@ -1,17 +1,18 @@
-//! The root page of the index. It contains the library's name and, for each leaf page, the length
-//! of the page and a separator. The names on a leaf page are not smaller than the page's separator.
+//! The root page of the index. It contains the library's name and metadata and, for each leaf page,
+//! the length of the page and a separator. The names on a leaf page are not smaller than the page's separator.
 //!
 //! The root page of a million textures fits into the first 16 KiB of the file, so that the first
 //! read contains it.
 
 use std::ops::Range;
 
-use crate::library::fault::{Fault, leaf_place};
+use crate::library::fault::{Fault, leaf_place, spectra_place};
 use crate::library::header::Header;
+use crate::library::metadata::{LibraryMetadata, METADATA_BYTES};
 use crate::library::name::check_library_name;
 use crate::library::page;
 use crate::library::rules as rule;
-use crate::library::wire::Cursor;
+use crate::library::wire::{Cursor, WireError};
 
 /// Place of the root page, as written in findings.
 pub(crate) const PLACE: &str = "/root";
@@ -25,6 +26,12 @@ pub(crate) struct Root {
     separators: Texts,
     /// Offsets of the leaves in the file, followed by the end of the last leaf.
     offsets: Vec<u64>,
+    /// What the library says about itself.
+    pub metadata: LibraryMetadata,
+    /// Offsets of the spectra of each leaf in the file, followed by the end of the last ones.
+    spectra: Vec<u64>,
+    /// BLAKE3 of all spectra.
+    pub spectra_blake3: [u8; 32],
 }
 
 impl Root {
@@ -48,10 +55,23 @@ impl Root {
         }
         let separators = Texts::read(&mut cursor, count)?;
         let offsets = offsets(&mut cursor, count, header, leaf_bytes)?;
-        if header.minor == crate::library::header::MINOR && cursor.rest() > 0 {
+        let mut root = Self {
+            name,
+            separators,
+            offsets,
+            metadata: LibraryMetadata::default(),
+            spectra: vec![header.shared.end; count + 1],
+            spectra_blake3: NO_SPECTRA,
+        };
+        if header.minor > 0 {
+            root.metadata = metadata(&mut cursor)?;
+            root.spectra = spectra(&mut cursor, count, header, leaf_bytes)?;
+            root.spectra_blake3 = cursor.array().map_err(malformed)?;
+        }
+        if header.minor <= crate::library::header::MINOR && cursor.rest() > 0 {
             return Err(malformed(cursor.malformed("bytes follow the last value")));
         }
-        Ok(Self { name, separators, offsets })
+        Ok(root)
     }
 
     pub(crate) fn leaves(&self) -> usize {
@@ -61,6 +81,18 @@ impl Root {
     /// Returns the byte range of a leaf in the file.
     pub(crate) fn leaf(&self, leaf: usize) -> Option<Range<u64>> {
         Some(*self.offsets.get(leaf)?..*self.offsets.get(leaf + 1)?)
+    }
+
+    /// Returns the byte range in the file of the spectra of a leaf's entries; `None` if no entry of
+    /// the leaf has a spectrum.
+    pub(crate) fn spectra(&self, leaf: usize) -> Option<Range<u64>> {
+        let range = *self.spectra.get(leaf)?..*self.spectra.get(leaf + 1)?;
+        Some(range).filter(|range| !range.is_empty())
+    }
+
+    /// Returns where the spectra begin in the file, which is where the shared objects end.
+    pub(crate) fn spectra_start(&self) -> u64 {
+        self.spectra.first().copied().unwrap_or_default()
     }
 
     /// Returns the leaf that contains the name, if any leaf does.
@@ -84,6 +116,55 @@ impl Root {
         let low = self.separators.get(leaf).unwrap_or_default();
         (low, self.separators.get(leaf + 1))
     }
+}
+
+/// BLAKE3 of no bytes.
+const NO_SPECTRA: [u8; 32] = [
+    0xaf, 0x13, 0x49, 0xb9, 0xf5, 0xf9, 0xa1, 0xa6, 0xa0, 0x40, 0x4d, 0xea, 0x36, 0xdc, 0xc9, 0x49,
+    0x9b, 0xcb, 0x25, 0xc9, 0xad, 0xc1, 0x12, 0xb7, 0xcc, 0x9a, 0x93, 0xca, 0xe4, 0x1f, 0x32, 0x62,
+];
+
+fn metadata(cursor: &mut Cursor<'_>) -> Result<LibraryMetadata, Fault> {
+    let malformed = |m: WireError| Fault::page(PLACE, m);
+    let length = cursor.count(1).map_err(malformed)?;
+    if length > METADATA_BYTES {
+        return Err(malformed(cursor.malformed("the metadata exceeds 8192 bytes")));
+    }
+    let json = cursor.read_bytes(length).map_err(malformed)?;
+    let read = serde_json::from_slice::<LibraryMetadata>(json).map_err(|error| error.to_string());
+    read.and_then(|metadata| metadata.check().map(|()| metadata)).map_err(|problem| {
+        let message = format!("the library's metadata: {problem}; pack the library again");
+        Fault::new(rule::LIBRARY_METADATA_INVALID, PLACE, message)
+    })
+}
+
+/// Reads the lengths of the spectra and returns their offsets. The spectra end the shared part.
+fn spectra(
+    cursor: &mut Cursor<'_>,
+    count: usize,
+    header: &Header,
+    leaf_bytes: u64,
+) -> Result<Vec<u64>, Fault> {
+    let (mut lengths, mut total) = (Vec::with_capacity(count), 0u64);
+    for leaf in 0..count {
+        let length = cursor.varint().map_err(|m| Fault::page(PLACE, m))?;
+        page::check_packed_size(length, leaf_bytes, &spectra_place(leaf))?;
+        total = total.saturating_add(length);
+        lengths.push(length);
+    }
+    let Some(mut at) = header.shared.end.checked_sub(total).filter(|at| *at >= header.shared.start)
+    else {
+        let message = format!(
+            "the spectra have {total} bytes, more than the shared part; pack the library again"
+        );
+        return Err(Fault::new(rule::LIBRARY_HEADER_INVALID, PLACE, message));
+    };
+    let ends = lengths.into_iter().map(|length| {
+        at += length;
+        at
+    });
+    let start = header.shared.end - total;
+    Ok(std::iter::once(start).chain(ends.collect::<Vec<_>>()).collect())
 }
 
 /// Reads the lengths of the leaves and returns their offsets.

@@ -63,6 +63,10 @@ rule_table! {
         "Two names differ only in case or in Unicode normalisation.",
         "Some systems take both for one file, so that one texture would replace the other.",
         "Rename one of the textures and pack the library again.";
+    LIBRARY_METADATA_INVALID Error:
+        "The library's metadata are not what the format demands.",
+        "Programs show them to users, and make links of them.",
+        "Describe the library again with `htex lib edit --describe`.";
     LIBRARY_ORDER_INVALID Error:
         "Names are not sorted, or one appears twice.",
         "A reader finds a texture by the order of the names.",
@@ -92,7 +96,7 @@ rule_table! {
         "It can be found and cannot be opened.",
         "Take it out with `htex lib cat`, see `htex validate`, correct it and pack the library again.";
     LIBRARY_ENTRY_WRONG Error:
-        "The index states other tags, conditions or models than the texture.",
+        "The index states other tags, conditions, models or rights than the texture.",
         "Searches find the wrong textures.",
         "Pack the library again.";
     LIBRARY_OBJECT_UNUSED Error:

@@ -76,7 +76,7 @@ impl Sharing {
         }
         debug_assert!(cuts.len() <= MOST_CUTS);
         let own = length(&pieces.own.range) + inlined;
-        TexturePlace { own: start..start + own, cuts }
+        TexturePlace { own: start..start + own, cuts, ..TexturePlace::default() }
     }
 
     /// Returns a texture's own bytes: those around its objects, and the objects that only this

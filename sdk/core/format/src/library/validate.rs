@@ -9,7 +9,8 @@ use htex_base::finding::{Findings, Report};
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::facts::Facts;
-use crate::library::fault::entry_place;
+use crate::library::fault::{entry_place, spectra_place};
+use crate::library::header::MINOR;
 use crate::library::index::{assembled, changed};
 use crate::library::leaf::length;
 use crate::library::limits::Limits;
@@ -67,6 +68,8 @@ struct Validation<'a, S> {
     ratio: Ratio,
     /// Whether all leaves could be read.
     is_whole: bool,
+    /// Number of entries of each leaf; `None` for a leaf that could not be read.
+    leaf_entries: Vec<Option<usize>>,
 }
 
 impl<'a, S: LibrarySource> Validation<'a, S> {
@@ -81,6 +84,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             entries: 0,
             ratio: library.ratio(),
             is_whole: true,
+            leaf_entries: Vec::new(),
         }
     }
 
@@ -92,7 +96,9 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             let range = index.leaf_range(leaf).unwrap_or_default();
             let bytes = self.library.read_range(range)?;
             hash.update(&bytes);
-            match index.leaf(leaf, &bytes) {
+            let read = index.leaf(leaf, &bytes);
+            self.leaf_entries.push(read.as_ref().ok().map(Vec::len));
+            match read {
                 Ok(entries) => {
                     if !self.check_leaf(leaf, &entries)? {
                         return Ok(());
@@ -111,7 +117,45 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 "the index does not have the header's hash; get the file again".to_owned();
             self.findings.add(rule::LIBRARY_INDEX_CHANGED, "/header", message);
         }
+        self.check_spectra()?;
         self.check_end();
+        Ok(())
+    }
+
+    /// Checks the pages of spectra. Whether a spectrum is that of its texture is not checked, because
+    /// this would take the texture's model.
+    fn check_spectra(&mut self) -> Result<(), LibraryError> {
+        let index = self.library.index();
+        let mut hash = blake3::Hasher::new();
+        for leaf in 0..index.leaves() {
+            let Some(range) = index.spectra_range(leaf) else { continue };
+            let bytes = self.library.read_range(range)?;
+            hash.update(&bytes);
+            match index.spectra(leaf, &bytes) {
+                Ok(spectra) => {
+                    let entries = self.leaf_entries.get(leaf).copied().flatten();
+                    let is_same = entries.is_none_or(|entries| entries == spectra.len());
+                    self.findings.require(
+                        is_same,
+                        rule::LIBRARY_COUNT_WRONG,
+                        spectra_place(leaf),
+                        || {
+                            format!(
+                                "there are {} spectra and {} textures; pack the library again",
+                                spectra.len(),
+                                entries.unwrap_or_default()
+                            )
+                        },
+                    );
+                }
+                Err(fault) => fault.add_to(&mut self.findings),
+            }
+        }
+        if hash.finalize().as_bytes() != &index.spectra_blake3() {
+            let message =
+                "the spectra do not have the root page's hash; get the file again".to_owned();
+            self.findings.add(rule::LIBRARY_INDEX_CHANGED, "/root", message);
+        }
         Ok(())
     }
 
@@ -223,6 +267,10 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             ("conditions", entry.conditions == facts.conditions),
             ("contact", entry.contact == facts.contact),
             ("exponents of the law", entry.law == facts.law),
+            // An index of version 1.0 does not state the others.
+            ("licence", entry.quantity.is_none() || entry.license == facts.license),
+            ("author", entry.quantity.is_none() || entry.author == facts.author),
+            ("quantity", entry.quantity.is_none_or(|quantity| quantity == facts.quantity)),
         ] {
             self.findings.require(is_same, rule::LIBRARY_ENTRY_WRONG, place, || {
                 format!(
@@ -250,7 +298,10 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 format!("the last texture ends at byte {end} of the payload, which has {payload}; pack the library again")
             });
         let used: u64 = self.objects.iter().map(|(start, end)| end - start).sum();
-        let unused = length(&header.shared).saturating_sub(used);
+        let objects = self.library.index().spectra_start().saturating_sub(header.shared.start);
+        // A newer minor version may store something else behind the objects.
+        let is_newer = header.minor > MINOR;
+        let unused = if is_newer { 0 } else { objects.saturating_sub(used) };
         self.findings.require(unused == 0, rule::LIBRARY_OBJECT_UNUSED, "/header", || {
             format!("no texture uses {unused} bytes of the shared part; pack the library again")
         });

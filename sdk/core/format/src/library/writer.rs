@@ -7,7 +7,9 @@ use htex_base::files::{FileInProgress, Scratch};
 
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
+use crate::library::metadata::LibraryMetadata;
 use crate::library::packer::{PackSummary, Packer};
+use crate::library::prepared::{Describe, PreparedTexture};
 use crate::library::reader::Library;
 use crate::library::source::LibrarySource;
 use crate::library::spool::ScratchFile;
@@ -56,6 +58,28 @@ impl Writer {
         self.packer.allows_unlicensed = true;
     }
 
+    /// Sets what the library says about itself.
+    pub fn set_metadata(&mut self, metadata: LibraryMetadata) {
+        self.packer.metadata = metadata;
+    }
+
+    /// Describes each texture that is added without a description by this function.
+    pub fn describe_with(&mut self, describe: Describe) {
+        self.packer.describe = Some(describe);
+    }
+
+    /// Adds a texture that was checked before, perhaps by another thread.
+    ///
+    /// # Errors
+    /// The errors of [`Self::add`], except those of an asset that is not valid.
+    pub fn add_prepared(
+        &mut self,
+        name: &str,
+        texture: PreparedTexture,
+    ) -> Result<(), LibraryError> {
+        self.packer.add_prepared(name, texture)
+    }
+
     /// Adds a texture. `asset` contains the bytes of a `.htex` file. The library stores them
     /// unchanged.
     ///
@@ -101,8 +125,8 @@ impl Writer {
     /// Writes the library and renames it to the target.
     ///
     /// # Errors
-    /// If a texture states no licence, a file cannot be written, or the library exceeds the default
-    /// limits of readers.
+    /// If a texture states no licence, a file cannot be written, the metadata break a rule
+    /// ([`LibraryMetadata::check`]), or the library exceeds the default limits of readers.
     pub fn finish(self) -> Result<PackSummary, LibraryError> {
         let Self { mut target, path, packer } = self;
         let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
@@ -139,6 +163,16 @@ impl MemoryWriter {
         self.0.allows_unlicensed = true;
     }
 
+    /// Sets what the library says about itself.
+    pub fn set_metadata(&mut self, metadata: LibraryMetadata) {
+        self.0.metadata = metadata;
+    }
+
+    /// Describes each texture by this function, as [`Writer::describe_with`] does.
+    pub fn describe_with(&mut self, describe: Describe) {
+        self.0.describe = Some(describe);
+    }
+
     /// Adds a texture, as [`Writer::add`] does.
     ///
     /// # Errors
@@ -150,7 +184,7 @@ impl MemoryWriter {
     /// Returns the library's bytes.
     ///
     /// # Errors
-    /// If a texture states no licence, or the library exceeds the default limits of readers.
+    /// The errors of [`Writer::finish`].
     pub fn finish(self) -> Result<(PackSummary, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;

@@ -55,7 +55,9 @@ fn reading_refuses_what_validation_refuses_where_it_reads() {
         let opened = Library::open_source_with(case.bytes.as_slice(), case.limits);
         let read = opened.and_then(|library| {
             for entry in library.entries() {
-                library.read(&entry?)?;
+                let entry = entry?;
+                library.description(&entry)?;
+                library.read(&entry)?;
             }
             Ok(())
         });

@@ -73,8 +73,8 @@ fn unpacked(page: &[u8]) -> Vec<u8> {
 fn the_example_is_what_the_writer_and_another_encoder_write() {
     let (_, file) = pack("One", &four()[..1]);
     assert_eq!(file[..128], example("header"));
-    assert_eq!(unpacked(&file[128..146]), example("root"));
-    assert_eq!(unpacked(&file[146..252]), example("leaf"));
+    assert_eq!(unpacked(&file[128..185]), example("root"));
+    assert_eq!(unpacked(&file[185..304]), example("leaf"));
     let raw = Raw::of(&four()[..1], 1);
     assert_eq!(raw.page(1), example("leaf"));
     let kept =
@@ -104,7 +104,17 @@ fn entries_are_those_that_another_reader_lists() {
     for (case, listed) in valid.iter().zip(listed) {
         let library = Library::open_source(case.bytes.as_slice()).unwrap();
         let entries: Vec<_> = library.entries().map(|entry| entry.unwrap()).collect();
-        let ours = json!({ "name": library.name(), "entries": entries });
+        let spectra = entries.iter().map(|entry| {
+            let spectrum = library.description(entry).unwrap().spectrum?;
+            Some(spectrum.levels_db().to_vec())
+        });
+        let spectra: Vec<_> = spectra.collect();
+        let ours = json!({
+            "name": library.name(),
+            "metadata": library.metadata(),
+            "entries": entries,
+            "spectra": spectra,
+        });
         assert_eq!(ours, listed, "{}", case.name);
     }
 }

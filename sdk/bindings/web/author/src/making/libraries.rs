@@ -15,6 +15,7 @@ pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         return Err(Refusal::argument("a file is missing"));
     }
     let mut writer = htex_format::library::MemoryWriter::new(&name)?;
+    writer.describe_with(htex_author::describe);
     if is_unlicensed {
         writer.allow_unlicensed();
     }

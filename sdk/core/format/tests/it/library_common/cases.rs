@@ -7,7 +7,7 @@ use htex_format::library::{Limits, validate_source};
 use serde_json::json;
 
 use super::raw::{Raw, crc32};
-use super::{Texture, module, pack, pack_bytes, texture};
+use super::{Texture, four_described, module, pack, pack_bytes, texture};
 
 /// A conformance file.
 pub struct Case {
@@ -95,6 +95,17 @@ fn raw() -> Raw {
     Raw::of(&four(), 2)
 }
 
+/// Spectra of one leaf of two, a felt difference and metadata with an unknown key.
+fn described() -> Raw {
+    raw().with(|raw| {
+        let mut levels = [0; 48];
+        levels.iter_mut().enumerate().for_each(|(i, level)| *level = 255 - 5 * i as u8);
+        raw.spectra = vec![vec![None, Some((-34.5, levels))]];
+        raw.leaves[0][1].felt = 152;
+        raw.metadata = br#"{"version":"2","mood":["calm"]}"#.to_vec();
+    })
+}
+
 fn valid() -> Vec<Named> {
     vec![
         ("valid_empty", pack("", &[]).1),
@@ -103,6 +114,9 @@ fn valid() -> Vec<Named> {
         ("valid_shared", pack("Shared", &sharing()).1),
         ("valid_equal", equal()),
         ("valid_small_leaves", raw().bytes()),
+        ("valid_described", four_described()),
+        ("valid_described_leaf", described().bytes()),
+        ("valid_version_1_0", raw().with(|raw| raw.version.1 = 0).bytes()),
         (
             "valid_newer_minor",
             raw()
@@ -152,6 +166,10 @@ fn files() -> Vec<Named> {
     ]
 }
 
+fn metadata(json: &[u8]) -> Vec<u8> {
+    raw().with(|raw| raw.metadata = json.to_vec()).bytes()
+}
+
 /// Files with a bad page.
 fn pages() -> Vec<Named> {
     let page = |number: usize, change: fn(&mut Vec<u8>)| {
@@ -185,10 +203,64 @@ fn pages() -> Vec<Named> {
         ),
         (
             "library_header_invalid_leaves",
-            page(0, |page| {
-                let low = page.len() - 2;
-                page[low] ^= 1;
-            }),
+            raw()
+                .with(|raw| {
+                    // Then the lengths end the page.
+                    raw.version.1 = 0;
+                    raw.pages = vec![(0, |page| {
+                        let low = page.len() - 2;
+                        page[low] ^= 1;
+                    })];
+                })
+                .bytes(),
+        ),
+        (
+            "library_header_invalid_spectra",
+            described()
+                .with(|raw| {
+                    // The length of the second leaf's spectra, before the hash.
+                    raw.pages = vec![(0, |page| {
+                        let at = page.len() - 33;
+                        page[at] = 0x7f;
+                    })];
+                })
+                .bytes(),
+        ),
+        ("library_metadata_invalid", metadata(br#"{"date":"2026-02-29"}"#)),
+        ("library_metadata_invalid_json", metadata(br#"{"version":"1""#)),
+        ("library_metadata_invalid_type", metadata(br#"{"authors":"Ann"}"#)),
+        ("library_metadata_invalid_twice", metadata(br#"{"version":"1","version":"2"}"#)),
+        ("library_metadata_invalid_line", metadata(br#"{"homepage":"a\nb"}"#)),
+        (
+            "library_metadata_invalid_direction",
+            metadata("{\"description\":\"a\u{202e}b\"}".as_bytes()),
+        ),
+        (
+            "library_page_invalid_metadata",
+            metadata(format!("{{\"description\":\"{}\"}}", "x".repeat(8200)).as_bytes()),
+        ),
+        ("library_page_checksum_spectra", {
+            let mut bytes = described().bytes();
+            let payload = u64::from_le_bytes(bytes[64..72].try_into().unwrap()) as usize;
+            bytes[payload - 1] ^= 1;
+            bytes
+        }),
+        (
+            "library_page_invalid_spectrum",
+            described().with(|raw| raw.spectra[0][1] = Some((f32::NAN, [255; 48]))).bytes(),
+        ),
+        (
+            "library_page_invalid_levels",
+            described().with(|raw| raw.spectra[0][1] = Some((0.0, [254; 48]))).bytes(),
+        ),
+        (
+            "library_page_invalid_known",
+            described().with(|raw| raw.pages = vec![(101, |page| page[1] = 2)]).bytes(),
+        ),
+        ("library_count_wrong_spectra", described().with(|raw| raw.spectra[0].push(None)).bytes()),
+        (
+            "library_index_changed_spectra",
+            described().with(|raw| raw.spectra_blake3 = Some([7; 32])).bytes(),
         ),
         ("library_name_invalid_library", raw().with(|raw| raw.name = b"Bell\x07".to_vec()).bytes()),
         (
@@ -270,6 +342,29 @@ fn entries() -> Vec<Named> {
         ),
         ("library_page_invalid_contact", changed(|raw| raw.leaves[0][0].law.0 |= 3)),
         ("library_page_invalid_exponent", changed(|raw| raw.leaves[0][0].law.1[1] = 4.5)),
+        ("library_page_invalid_quantity", changed(|raw| raw.leaves[0][0].quantity = 5)),
+        ("library_page_invalid_felt", changed(|raw| raw.leaves[0][0].felt = 100_002)),
+        (
+            "library_page_invalid_licence",
+            raw()
+                .with(|raw| {
+                    // The first licence, before two authors, two quantities and two felt differences.
+                    raw.pages = vec![(1, |page| {
+                        let at = page.len() - 8;
+                        page[at] = 2;
+                    })];
+                })
+                .bytes(),
+        ),
+        (
+            "library_entry_wrong_licence",
+            changed(|raw| raw.leaves[0][0].license = Some("MIT".to_owned())),
+        ),
+        (
+            "library_entry_wrong_author",
+            changed(|raw| raw.leaves[0][0].author = Some("Ann".to_owned())),
+        ),
+        ("library_entry_wrong_quantity", changed(|raw| raw.leaves[0][0].quantity = 2)),
         ("library_entry_wrong_law", changed(|raw| raw.leaves[0][0].law.1[0] = 1.0)),
         ("library_object_unused", changed(|raw| raw.shared = vec![1, 2, 3])),
         ("library_asset_changed", changed(|raw| raw.payload[40] ^= 1)),

@@ -3,7 +3,9 @@
 pub mod cases;
 pub mod raw;
 
-use htex_format::library::{Library, PackSummary, Writer};
+use htex_format::library::{
+    CoarseSpectrum, Description, Library, LibraryMetadata, MemoryWriter, PackSummary, Writer,
+};
 use htex_format::{Asset, Manifest, Plugin};
 use serde_json::json;
 
@@ -87,6 +89,35 @@ pub fn pack(name: &str, textures: &[Texture]) -> (PackSummary, Vec<u8>) {
     let all = textures.iter().map(|texture| (texture.name.clone(), texture.bytes()));
     let all: Vec<_> = all.collect();
     pack_bytes(name, all.iter().map(|(name, bytes)| (name, bytes)))
+}
+
+/// A description that depends only on the texture's name.
+pub fn described(asset: &Asset) -> Description {
+    let hertz: Vec<f64> = (4..=200).map(|i| 5.0 * f64::from(i)).collect();
+    let power = asset.manifest.name.len() as f64 / 8.0;
+    let magnitude: Vec<f64> = hertz.iter().map(|f| 0.02 / (f / 20.0).powf(power)).collect();
+    Description {
+        // One texture has no spectrum.
+        spectrum: CoarseSpectrum::new(&hertz, &magnitude).filter(|_| asset.manifest.name != "felt"),
+        felt_error_rms_db: Some(power).filter(|_| !asset.manifest.tags.is_empty()),
+    }
+}
+
+/// A library of four textures, with descriptions and metadata.
+pub fn four_described() -> Vec<u8> {
+    let mut writer = MemoryWriter::new("Described").unwrap();
+    writer.describe_with(described);
+    writer.set_metadata(LibraryMetadata {
+        version: Some("1.2".to_owned()),
+        description: Some("Four textures\nand what they are like".to_owned()),
+        authors: vec!["Ann".to_owned(), "Bo".to_owned()],
+        date: Some("2026-11-29".to_owned()),
+        ..LibraryMetadata::default()
+    });
+    for texture in cases::four() {
+        writer.add(&texture.name, &texture.bytes()).unwrap();
+    }
+    writer.finish().unwrap().1
 }
 
 /// Packs assets under their names.

@@ -17,7 +17,13 @@ pub struct Raw {
     pub payload: Vec<u8>,
     pub entries: Option<u64>,
     pub index_blake3: Option<[u8; 32]>,
-    /// Changes to unpacked pages: 0 is the root, 1 the first leaf.
+    /// Metadata as JSON.
+    pub metadata: Vec<u8>,
+    /// Spectra of the leaves' entries: the largest level and the others. Leaves beyond the last one
+    /// have no spectra.
+    pub spectra: Vec<Vec<Option<(f32, [u8; 48])>>>,
+    pub spectra_blake3: Option<[u8; 32]>,
+    /// Changes to unpacked pages: 0 is the root, 1 the first leaf, 101 the spectra of the first leaf.
     pub pages: Vec<(usize, Change)>,
     /// Unpacked pages that replace others, with the same numbering.
     pub replaced: Vec<(usize, Vec<u8>)>,
@@ -42,12 +48,22 @@ pub struct Row {
     /// Own bytes before the last one, start, length.
     pub cuts: Vec<(u64, u64, u64)>,
     pub hash: [u8; 32],
+    pub license: Option<String>,
+    pub author: Option<String>,
+    pub quantity: u8,
+    /// Felt difference, hundredths of a decibel, plus 1; 0 if it is unknown.
+    pub felt: u64,
 }
 
 impl Raw {
     /// Creates a library of these textures with `in_leaf` entries in each leaf. Nothing is shared.
     pub fn of(textures: &[Texture], in_leaf: usize) -> Self {
-        let mut raw = Self { name: b"Raw".to_vec(), version: (1, 0), ..Self::default() };
+        let mut raw = Self {
+            name: b"Raw".to_vec(),
+            version: (1, 1),
+            metadata: b"{}".to_vec(),
+            ..Self::default()
+        };
         let mut rows: Vec<Row> = Vec::new();
         for texture in textures {
             let bytes = texture.bytes();
@@ -64,6 +80,10 @@ impl Raw {
                 own: bytes.len() as u64,
                 cuts: Vec::new(),
                 hash: *blake3::hash(&bytes).as_bytes(),
+                license: Some("CC0-1.0".to_owned()),
+                author: None,
+                quantity: 0,
+                felt: 0,
             });
             raw.payload.extend(bytes);
         }
@@ -88,7 +108,8 @@ impl Raw {
         header.extend(self.version.1.to_le_bytes());
         header.extend([0; 4]);
         let mut at = 128u64;
-        let lengths = [root.len(), leaves.concat().len(), self.shared.len(), self.payload.len()];
+        let shared = [self.shared.clone(), self.spectrum_pages().concat()].concat();
+        let lengths = [root.len(), leaves.concat().len(), shared.len(), self.payload.len()];
         for length in lengths {
             header.extend(at.to_le_bytes());
             header.extend((length as u64).to_le_bytes());
@@ -102,7 +123,7 @@ impl Raw {
             change(&mut header);
         }
         header.extend(crc32(&header).to_le_bytes());
-        [header, index, self.shared.clone(), self.payload.clone()].concat()
+        [header, index, shared, self.payload.clone()].concat()
     }
 
     /// An unpacked page: 0 is the root.
@@ -129,7 +150,30 @@ impl Raw {
             before = separator.clone();
         }
         leaves.iter().for_each(|leaf| varint(&mut page, leaf.len() as u64));
+        if self.version.1 > 0 {
+            text(&mut page, &self.metadata);
+            let pages = self.spectrum_pages();
+            pages.iter().for_each(|spectra| varint(&mut page, spectra.len() as u64));
+            let hash = *blake3::hash(&pages.concat()).as_bytes();
+            page.extend(self.spectra_blake3.unwrap_or(hash));
+        }
         page
+    }
+
+    /// The packed pages of spectra, one for each leaf; empty without spectra.
+    fn spectrum_pages(&self) -> Vec<Vec<u8>> {
+        let pages = (0..self.leaves.len()).map(|leaf| {
+            let Some(spectra) = self.spectra.get(leaf) else { return Vec::new() };
+            let mut page = Vec::new();
+            varint(&mut page, spectra.len() as u64);
+            page.extend(spectra.iter().map(|spectrum| u8::from(spectrum.is_some())));
+            for (largest, levels) in spectra.iter().flatten() {
+                page.extend(largest.to_le_bytes());
+                page.extend(levels);
+            }
+            self.frame(101 + leaf, page)
+        });
+        pages.collect()
     }
 
     fn leaf(&self, leaf: usize) -> Vec<u8> {
@@ -171,6 +215,23 @@ impl Raw {
             }
         }
         rows.iter().for_each(|row| page.extend(row.hash));
+        if self.version.1 == 0 {
+            return page;
+        }
+        let rights = rows.iter().flat_map(|row| row.license.iter().chain(&row.author));
+        let mut rights: Vec<String> = rights.cloned().collect();
+        rights.sort();
+        rights.dedup();
+        varint(&mut page, rights.len() as u64);
+        rights.iter().for_each(|right| text(&mut page, right.as_bytes()));
+        for chosen in [|row: &Row| row.license.clone(), |row: &Row| row.author.clone()] {
+            for right in rows.iter().map(chosen) {
+                let place = right.and_then(|right| rights.iter().position(|r| *r == right));
+                varint(&mut page, place.map_or(0, |place| place as u64 + 1));
+            }
+        }
+        page.extend(rows.iter().map(|row| row.quantity));
+        rows.iter().for_each(|row| varint(&mut page, row.felt));
         page
     }
 

@@ -1,0 +1,278 @@
+use std::fmt::{Display, Formatter};
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use clap::Args;
+use htex_base::files::{AtFile, FileInProgress, read_regular};
+use htex_build::{Report, Status};
+use htex_format::library::Library;
+use serde::Serialize;
+
+use crate::failure::{Failure, Result, for_file};
+use crate::located;
+use crate::output::{show, shown, write_file};
+use crate::shared;
+
+/// The page that is filled in, in the folder of the studio.
+const PAGE: &str = "catalogue.html";
+/// Largest page that is read, bytes.
+const MOST_PAGE_BYTES: u64 = 64 << 20;
+/// Largest report of a build that is read, bytes.
+const MOST_REPORT_BYTES: u64 = 1 << 30;
+/// Largest library that is put into the page itself, bytes.
+const MOST_EMBEDDED: u64 = 2 << 20;
+/// Number of textures that the page lists as left out of a build.
+const MOST_LEFT_OUT: usize = 1000;
+
+/// Make a catalogue of a library: a web page on which people search, see and play its textures
+///
+/// Writes the page (DIR/index.html), and the library beside it. Each texture has an address of its
+/// own. The page reads the library by ranges, so the web server must answer such requests, as
+/// nearly all do. A library of at most 2 MiB is also in the page itself, which then works from a
+/// disk, too.
+///
+/// `cargo xtask studio --out DIR` builds the page that this command fills in.
+#[derive(Args)]
+pub(crate) struct Catalogue {
+    /// The library
+    #[arg(value_name = "LIBRARY", value_parser = located::RECORDING)]
+    library: PathBuf,
+
+    /// Folder for the catalogue
+    #[arg(short, long, value_name = "DIR", value_parser = located::LOCAL_OUTPUT)]
+    output: PathBuf,
+
+    /// Address at which the library is published. The page then reads the library from there, and
+    /// the library is not copied
+    #[arg(long, value_name = "URL")]
+    url: Option<String>,
+
+    /// Report of the build that made the library (build-report.json). The catalogue gets a page with
+    /// the textures that the build left out, and with the findings of recordings
+    #[arg(long, value_name = "JSON", value_parser = located::RECORDING)]
+    report: Option<PathBuf>,
+
+    /// Folder of the page that is filled in [default: $HTEX_STUDIO, or ../share/htex/studio
+    /// relative to the command]
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What the page is told.
+#[derive(Serialize)]
+struct Options<'a> {
+    library: &'a str,
+    report: Option<BuildPage>,
+}
+
+/// The report of a build, as the page shows it.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct BuildPage {
+    program: String,
+    planned: usize,
+    missing: usize,
+    left_out: Vec<LeftOut>,
+    findings: Vec<Finding>,
+}
+
+#[derive(Serialize)]
+struct LeftOut {
+    name: String,
+    reasons: Vec<String>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Finding {
+    code: String,
+    severity: String,
+    textures: usize,
+    in_library: usize,
+    first: Vec<String>,
+}
+
+/// The catalogue that was written.
+#[derive(Serialize)]
+struct Written {
+    page: String,
+    library: String,
+    textures: u64,
+    /// Whether the page contains the library, and so works from a disk.
+    embedded: bool,
+}
+
+impl Display for Written {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let textures = if self.textures == 1 { "texture" } else { "textures" };
+        writeln!(f, "{}: {} {textures} of {}", self.page, self.textures, self.library)?;
+        if self.embedded {
+            return Ok(());
+        }
+        writeln!(f, "  a web server shows the page; from a disk, a browser cannot read the library")
+    }
+}
+
+impl Catalogue {
+    pub(crate) fn run(self) -> Result {
+        let opened = Library::open(&self.library).map_err(for_file(&self.library))?;
+        let bytes = opened.index().file_bytes();
+        let report = self.report.as_deref().map(build_page).transpose()?;
+        let find = |folder: &Path| Some(folder.join(PAGE)).filter(|page| page.is_file());
+        let page = shared::page(self.folder.as_deref(), "the page of catalogues", find)?;
+        let template = read_regular(&page, MOST_PAGE_BYTES).reading(&page)?;
+        let template = String::from_utf8(template)
+            .map_err(|_| Failure::Other(format!("{}: it is not UTF-8", shown(&page))))?;
+        let (address, origin) = match &self.url {
+            Some(url) => (url.clone(), Some(origin(url)?)),
+            None => (encoded(&file_name(&self.library)), None),
+        };
+        let is_embedded = origin.is_none() && bytes <= MOST_EMBEDDED;
+        let textures = match is_embedded {
+            true => {
+                let bytes = read_regular(&self.library, MOST_EMBEDDED).reading(&self.library)?;
+                STANDARD.encode(bytes)
+            }
+            false => String::new(),
+        };
+        let title = if opened.name().is_empty() { "Textures" } else { opened.name() };
+        let options = serde_json::to_string(&Options { library: &address, report })
+            .map_err(|error| Failure::Other(error.to_string()))?;
+        let filled =
+            filled(&template, title, &options, &textures, origin.as_deref()).ok_or_else(|| {
+                Failure::Other(format!(
+                    "{}: it is not the page of catalogues of this version; build it again",
+                    shown(&page)
+                ))
+            })?;
+        std::fs::create_dir_all(&self.output).writing(&self.output)?;
+        // The page last, so that it never names a library that is not there.
+        if origin.is_none() {
+            copy(&self.library, &self.output.join(file_name(&self.library)))?;
+        }
+        let index = self.output.join("index.html");
+        write_file(&index, filled.as_bytes())?;
+        let written = Written {
+            page: index.display().to_string(),
+            library: title.to_owned(),
+            textures: opened.len(),
+            embedded: is_embedded,
+        };
+        show(&written, self.json)
+    }
+}
+
+/// Fills the page in; `None` if it lacks a place.
+fn filled(
+    template: &str,
+    title: &str,
+    options: &str,
+    textures: &str,
+    origin: Option<&str>,
+) -> Option<String> {
+    let title = title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    // Inside a script element, only `<` could end the data.
+    let options = options.replace('<', "\\u003c");
+    let connects = format!("connect-src 'self' {}", origin.unwrap_or_default());
+    let mut page = template.to_owned();
+    let own = "connect-src 'self'";
+    // A place is in the page before any text that the page is filled with.
+    for (place, text) in [
+        ("__TITLE__", &title[..]),
+        (own, connects.trim_end()),
+        ("__TEXTURES__", textures),
+        ("__OPTIONS__", &options),
+    ] {
+        let at = page.find(place)?;
+        page.replace_range(at..at + place.len(), text);
+    }
+    Some(page)
+}
+
+/// Copies a file. The copy is written beside its target and renamed.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if let (Ok(a), Ok(b)) = (from.canonicalize(), to.canonicalize())
+        && a == b
+    {
+        return Ok(());
+    }
+    let mut source = File::open(from).reading(from)?;
+    let mut target = FileInProgress::create(to).writing(to)?;
+    std::io::copy(&mut source, target.file()).writing(to)?;
+    target.file().flush().writing(to)?;
+    Ok(target.keep().writing(to)?)
+}
+
+fn file_name(library: &Path) -> String {
+    // A library that was downloaded keeps the name that it has at its URI.
+    let shown = located::with_uris(&library.display().to_string());
+    let path = shown
+        .split_once("://")
+        .map_or(&shown[..], |(_, path)| path.split(['?', '#']).next().unwrap_or_default());
+    let name = Path::new(path).file_name().unwrap_or_default().to_string_lossy().into_owned();
+    if name.to_ascii_lowercase().ends_with(".htexlib") { name } else { format!("{name}.htexlib") }
+}
+
+/// Returns a file name as a relative address.
+fn encoded(name: &str) -> String {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte);
+    name.bytes()
+        .map(|byte| match byte {
+            byte if is_plain(byte) => char::from(byte).to_string(),
+            byte => format!("%{byte:02X}"),
+        })
+        .collect()
+}
+
+/// Returns the origin of the address of a library.
+fn origin(url: &str) -> Result<String> {
+    let wrong = || {
+        Failure::Usage(format!("--url {url}: give the address of the library, http:// or https://"))
+    };
+    let (scheme, rest) = url.split_once("://").ok_or_else(wrong)?;
+    let host = rest.split(['/', '?', '#']).next().unwrap_or_default();
+    let is_host = |c: char| c.is_ascii_alphanumeric() || "-._:[]".contains(c);
+    if !matches!(scheme, "http" | "https") || host.is_empty() || !host.chars().all(is_host) {
+        return Err(wrong());
+    }
+    Ok(format!("{scheme}://{host}"))
+}
+
+fn build_page(path: &Path) -> Result<BuildPage> {
+    let bytes = read_regular(path, MOST_REPORT_BYTES).reading(path)?;
+    let report: Report = serde_json::from_slice(&bytes)
+        .map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))?;
+    let missing: Vec<_> = report.textures.iter().filter(|t| t.status == Status::LeftOut).collect();
+    let mut findings: Vec<_> = report.findings.iter().collect();
+    findings.sort_by_key(|(code, share)| (share.severity, *code));
+    Ok(BuildPage {
+        program: report.program.clone(),
+        planned: report.textures.len(),
+        missing: missing.len(),
+        left_out: missing
+            .iter()
+            .take(MOST_LEFT_OUT)
+            .map(|texture| LeftOut {
+                name: texture.name.clone(),
+                reasons: texture.missed.iter().map(|missed| missed.reason.clone()).collect(),
+            })
+            .collect(),
+        findings: findings
+            .into_iter()
+            .map(|(code, share)| Finding {
+                code: code.clone(),
+                severity: share.severity.to_string(),
+                textures: share.textures,
+                in_library: share.in_library,
+                first: share.first.clone(),
+            })
+            .collect(),
+    })
+}

@@ -1,0 +1,26 @@
+//! What a writer states about a texture that its manifest does not say.
+
+use crate::library::coarse_spectrum::CoarseSpectrum;
+
+/// What a writer states about a texture besides its manifest, for searches. It takes a model to
+/// compute these values, so programs that only read and validate libraries do not check them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Description {
+    /// The texture's spectrum at its default condition; `None` if it is silent, or if the writer
+    /// does not know its models.
+    pub spectrum: Option<CoarseSpectrum>,
+    /// The felt difference between the texture and its recordings, RMS over third-octave bands, at
+    /// the worst condition, decibels; `None` if it is not known.
+    pub felt_error_rms_db: Option<f64>,
+}
+
+impl Description {
+    /// Returns this description, with what it lacks taken from `other`.
+    #[cfg(feature = "write")]
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            spectrum: self.spectrum.or(other.spectrum),
+            felt_error_rms_db: self.felt_error_rms_db.or(other.felt_error_rms_db),
+        }
+    }
+}

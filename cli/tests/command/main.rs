@@ -30,6 +30,7 @@ mod library;
 mod library_builds;
 #[cfg(feature = "build")]
 mod library_changes;
+mod library_described;
 #[cfg(target_os = "linux")]
 mod memory;
 mod metadata;

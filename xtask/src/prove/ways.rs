@@ -34,15 +34,20 @@ const PICTURES: &str = "../figures/ways/";
 const OTHERS: [&str; 4] = ["aarch64", "arm64", "win", "macos"];
 
 /// The pages, and whether each uses the sources of htex.
-const WAYS: [(&str, bool); 4] =
-    [("recordings", false), ("models", true), ("apps", false), ("lab", false)];
+const WAYS: [(&str, bool); 5] = [
+    ("recordings", false),
+    ("models", true),
+    ("apps", false),
+    ("lab", false),
+    ("libraries", false),
+];
 
 #[derive(Debug, Args)]
 pub struct Options {
     /// The folder to which `cargo xtask release --out DIR` wrote
     #[arg(long, value_name = "DIR")]
     release: PathBuf,
-    /// Run only this page: recordings, models, apps or lab [default: all]
+    /// Run only this page: recordings, models, apps, lab or libraries [default: all]
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Replace the output in the pages by what the commands print

@@ -8,7 +8,7 @@ use fs_err as fs;
 
 use super::parts::put_notices;
 use crate::dist::{Dist, copy, dist, of_command};
-use crate::places::{cargo, release_trees, workspace};
+use crate::places::{cargo, release_trees, target, workspace};
 use crate::platform::{Build, Platform, System};
 use crate::plugins::models;
 use crate::programs::{output, run};
@@ -21,6 +21,9 @@ const FILES: [(&str, &str); 5] = [
     ("sdk/bindings/studio/shelf/shelf.htexlib", "share/htex/textures.htexlib"),
     ("xtask/src/release/README.md", "README.md"),
 ];
+
+/// The page of catalogues.
+const CATALOGUE: &str = "catalogue.html";
 
 /// Where each shell looks for completions, relative to a prefix.
 const COMPLETIONS: [(&str, &str); 4] = [
@@ -44,6 +47,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     command(build, &folder)?;
     dist(&Dist { prefix: folder.clone(), whole: true, build: build.clone() })?;
     plugins(build, &folder)?;
+    catalogue(&folder)?;
     for (from, to) in FILES {
         copy(&workspace().join(from), &folder.join(to))?;
     }
@@ -61,6 +65,17 @@ fn command(build: &Build, folder: &Path) -> Result<()> {
     run(build.cargo_of_both().args(of_command(build)))?;
     let name = executable(build.platform().system);
     copy(&build.built().join(name), &folder.join("bin").join(name))
+}
+
+/// Copies the page that `htex lib catalogue` fills in. It is the one that the tests of the studio
+/// have built, if there is one.
+fn catalogue(folder: &Path) -> Result<()> {
+    let tested = target().join("bindings/studio/page");
+    let page = if tested.join(CATALOGUE).is_file() { tested } else { target().join("studio") };
+    if !page.join(CATALOGUE).is_file() {
+        crate::studio::studio(&page)?;
+    }
+    copy(&page.join(CATALOGUE), &folder.join("share/htex/studio").join(CATALOGUE))
 }
 
 fn executable(system: System) -> &'static str {

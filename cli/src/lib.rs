@@ -12,6 +12,7 @@ mod devices;
 mod differences;
 mod explicit_args;
 mod failure;
+mod findings_format;
 mod gains;
 mod grid;
 mod groups;
@@ -24,6 +25,7 @@ mod output;
 mod outputs;
 mod playing;
 mod plugins;
+mod progress;
 mod recording_plot;
 mod recordings;
 mod report;
@@ -66,6 +68,14 @@ const LONG_VERSION: &str = concat!(
 struct Cli {
     #[command(subcommand)]
     command: Command,
+
+    /// Print only results and errors: no notes, no warnings, no progress
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+
+    /// Also print how long the command took
+    #[arg(short, long, global = true)]
+    verbose: bool,
 }
 
 /// Returns the command's arguments, with its subcommands in groups.
@@ -145,14 +155,16 @@ fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Err
 }
 
 fn parse_and_run(arguments: Vec<OsString>) -> u8 {
-    let command = match parse(arguments) {
-        Ok(cli) => cli.command,
+    let began = std::time::Instant::now();
+    let Cli { command, quiet, verbose } = match parse(arguments) {
+        Ok(cli) => cli,
         Err(error) => {
             // A closed standard output or standard error is not an error of the command.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(Exit::USAGE.code());
         }
     };
+    progress::set_quiet(quiet);
     let code = match run_command(command) {
         Ok(exit) => exit.code(),
         Err(failure) => {
@@ -161,6 +173,9 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
             failure.exit().code()
         }
     };
+    if verbose {
+        crate::output::tell!("note: it took {:.3} s", began.elapsed().as_secs_f64());
+    }
     // Called last, because it waits as long as the display's output may have a voltage.
     playing::stay_until_zero();
     code

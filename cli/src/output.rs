@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, FileError, OwnFolder};
 use htex_base::finding::{Notice, plain};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::failure::{Exit, Result, with_hint};
 use crate::located::with_uris;
+use crate::progress::is_quiet;
 
 /// Prints a line on standard error. Unlike `eprintln!`, it does not panic if standard error is
 /// closed.
@@ -127,6 +127,9 @@ pub(crate) fn note<N: Clone + Into<Notice>>(notes: &[N]) {
 }
 
 fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
+    if is_quiet() {
+        return;
+    }
     for notice in notices {
         let Notice { text, hint } = notice.clone().into();
         tell!("{kind}: {}", plain(&with_uris(&with_hint(&text, hint))));
@@ -180,26 +183,6 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 /// Returns a path for messages, with control characters escaped.
 pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string()).into_owned()
-}
-
-/// Returns a progress bar over `steps` named steps on standard error. It is hidden if standard
-/// error is not a terminal.
-pub(crate) fn bar(steps: u64) -> ProgressBar {
-    bar_like(steps, "{bar:24} {pos}/{len} {msg}")
-}
-
-/// Returns a progress bar over bytes, with the rate and the time left.
-#[cfg(feature = "build")]
-pub(crate) fn byte_bar(bytes: u64) -> ProgressBar {
-    bar_like(bytes, "{bar:24} {msg}, {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left")
-}
-
-fn bar_like(length: u64, template: &str) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// Returns a line that a POSIX shell splits into these arguments.

@@ -21,7 +21,8 @@ use crate::assets::{AssetSummary, RepresentationSummary, short_name};
 use crate::columns::{cells, columns, headings};
 use crate::failure::{Failure, Result, for_file};
 use crate::invocation::tool;
-use crate::output::{OutputFile, bar, show};
+use crate::output::{OutputFile, show};
+use crate::progress::bar;
 use crate::report::{ReportSource, measures, shares};
 use crate::wav::write_wav;
 

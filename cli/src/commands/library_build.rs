@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use clap::Args;
 use htex_author::FeltShare;
-use htex_base::finding::{Severity, plain};
+use htex_base::finding::{FileReport, Finding, Hint, Severity, plain};
 use htex_build::{
     Build as Recipe, BuildError, BuildOptions, Destination, FindingShare, Job, Report, Status,
     TextureReport, Why, named_briefly, report_failure,
@@ -17,9 +17,11 @@ use serde_json::json;
 
 use crate::assets::short_name;
 use crate::failure::{Exit, Failure, Result, for_file};
+use crate::findings_format::{FindingsFormat, formatted};
 use crate::invocation::tool;
 use crate::located::Anywhere;
-use crate::output::{byte_bar, print_json, show};
+use crate::output::{print_json, show, write};
+use crate::progress::byte_bar;
 use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
@@ -92,6 +94,10 @@ pub(crate) struct Build {
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 
+    /// Print findings and textures that were left out, for continuous integration
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "json")]
+    format: Option<FindingsFormat>,
+
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -115,6 +121,9 @@ struct Summary<'a> {
     left_out: Vec<&'a TextureReport>,
     /// Names of textures in the previous library that the recipe no longer asks for.
     removed: &'a [String],
+    /// Names of textures that stay in the library although the recipe no longer makes them.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    kept: &'a [String],
     #[serde(skip)]
     catalogue: String,
 }
@@ -196,6 +205,9 @@ impl Build {
     }
 
     fn report(&self, report: &Report, to: &Destination, work: &Work, seconds: f64) -> Result {
+        if let Some(format) = self.format {
+            write(&formatted(format, "htex build", &file_reports(report)))?;
+        }
         let results = to.results();
         let left_out: Vec<&TextureReport> =
             report.textures.iter().filter(|texture| texture.status == Status::LeftOut).collect();
@@ -218,11 +230,40 @@ impl Build {
             other_warnings: other_warnings(report),
             left_out,
             removed: &report.removed,
+            kept: &report.kept,
             catalogue: results.inside("index.html").to_string(),
         };
-        show(&summary, self.json)?;
+        if self.format.is_none() {
+            show(&summary, self.json)?;
+        }
         Ok(exit)
     }
+}
+
+/// Returns the findings of each texture. A gate that a texture misses is an error.
+fn file_reports(report: &Report) -> Vec<FileReport> {
+    let reports = report.textures.iter().map(|texture| {
+        let missed = texture.missed.iter().map(|missed| Finding {
+            code: missed.gate.to_ascii_uppercase(),
+            severity: Severity::Error,
+            pointer: String::new(),
+            message: missed.reason.clone(),
+            schema_rule: None,
+            hint: Hint::default(),
+        });
+        let found = texture.asset.iter().flat_map(|asset| &asset.findings);
+        let found = found.map(|finding| Finding {
+            code: finding.code.clone(),
+            // Gates decide what is an error.
+            severity: finding.severity.max(Severity::Warning),
+            pointer: String::new(),
+            message: format!("{}: {}", finding.recordings.join(", "), finding.message),
+            schema_rule: None,
+            hint: Hint::default(),
+        });
+        htex_base::finding::Report::new(missed.chain(found).collect()).of_file(&texture.name)
+    });
+    reports.collect()
 }
 
 /// What a build would do.
@@ -296,10 +337,15 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), BuildError> {
 
 /// Returns a line with the removed textures, if there are any.
 fn removed(names: &[String]) -> String {
+    named("removed", names)
+}
+
+/// Returns a line with textures, if there are any. `what` says what happens to them.
+fn named(what: &str, names: &[String]) -> String {
     match names.len() {
         0 => String::new(),
         count => format!(
-            "removed: {count} texture{} ({})\n",
+            "{what}: {count} texture{} ({})\n",
             if count == 1 { "" } else { "s" },
             plain(&named_briefly(names))
         ),
@@ -347,6 +393,7 @@ impl Display for Summary<'_> {
             )?;
         }
         f.write_str(&removed(self.removed))?;
+        f.write_str(&named("kept", self.kept))?;
         self.findings(f)?;
         writeln!(f, "catalogue: {}", plain(&self.catalogue))?;
         for texture in &self.left_out {

@@ -14,8 +14,9 @@ use serde_json::Value;
 
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{OutputFile, bar, note, show, shown, warn};
+use crate::output::{OutputFile, note, show, shown, warn};
 use crate::playing::{Output, limited_text};
+use crate::progress::bar;
 use crate::scene_sound::rights;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::signals::{self, interrupted};

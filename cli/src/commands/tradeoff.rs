@@ -18,9 +18,10 @@ use crate::columns::{Column, cells, headings};
 use crate::failure::{Failure, Result};
 use crate::invocation::{command_line, tool};
 use crate::located;
-use crate::output::{OutputFile, bar, show, shown, warn, write_file};
+use crate::output::{OutputFile, show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::{PluginArgs, way};
+use crate::progress::bar;
 use crate::recordings::RecordingArgs;
 
 /// Measure models' accuracy, size and time

@@ -13,8 +13,9 @@ use serde_json::Value;
 use super::lib::check;
 use crate::assets::read_asset;
 use crate::failure::{Exit, Failure, Result, for_file, with_hint};
+use crate::findings_format::{FindingsFormat, formatted};
 use crate::located;
-use crate::output::{print, print_json, shown, warn};
+use crate::output::{print, print_json, shown, warn, write};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
 use crate::schemas::{ABSENT, ExtensionSchema, SchemaFile};
@@ -59,6 +60,10 @@ pub(crate) struct Validate {
     #[command(flatten)]
     reading: RecordingArgs,
 
+    /// Print findings for continuous integration
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "json")]
+    format: Option<FindingsFormat>,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -95,7 +100,7 @@ impl Validate {
             Ok((path.as_path(), report))
         });
         // `show_reports` consumes the iterator, so `refused` is complete afterwards.
-        let exit = show_reports(reports, self.json)?;
+        let exit = show_reports(reports, self.json, self.format)?;
         Ok(if refused { Exit::FAILURE } else { exit })
     }
 
@@ -195,25 +200,28 @@ pub(crate) fn refuse_library(path: &Path) -> Result<()> {
     )))
 }
 
-/// Prints each report as soon as it is there, or all reports together as JSON. The exit status is 1
+/// Prints each report as soon as it is there, or all reports together as JSON or in another format. The exit status is 1
 /// if a report is not valid.
 pub(crate) fn show_reports<'a>(
     reports: impl Iterator<Item = Result<(&'a Path, Report)>>,
     is_json: bool,
+    format: Option<FindingsFormat>,
 ) -> Result {
     let (mut all_valid, mut reported) = (true, Vec::new());
     for report in reports {
         let (path, report) = report?;
         all_valid &= report.valid;
         let report = report.of_file(&path.display().to_string());
-        if is_json {
+        if is_json || format.is_some() {
             reported.push(report);
         } else {
             print(&report_text(&report))?;
         }
     }
-    if is_json {
-        print_json(&reported)?;
+    match format {
+        Some(format) => write(&formatted(format, "htex", &reported))?,
+        None if is_json => print_json(&reported)?,
+        None => {}
     }
     Ok(Exit::ok_if(all_valid))
 }

@@ -652,3 +652,105 @@ fn textures_whose_recordings_are_gone_are_named() {
     assert!(run.error().contains("would lose 4 textures"), "{}", run.error());
     assert_same(&results(&place.path("dist")), &before);
 }
+
+/// Textures whose recordings are archived stay in the library as they were, through later builds, and
+/// a library may not lose more textures than the recipe says.
+#[test]
+fn textures_without_recordings_stay_or_are_missed() {
+    let place = place();
+    build(&place, "dist", &[]);
+    let library =
+        |name: &str| Library::open(&place.path("dist/surfaces.htexlib")).unwrap().get(name);
+    let before = library("vinyl/1").unwrap();
+    fs::rename(place.path("rec/vinyl_1.csv"), place.path("archived.csv")).unwrap();
+    fs::rename(place.path("rec/vinyl_2.csv"), place.path("archived too.csv")).unwrap();
+
+    let first = "[library]\nname = \"surfaces\"";
+    place.write("library.toml", &RECIPE.replace(first, &format!("{first}\nmax_removed = 1")));
+    let refused = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert!(refused.code() == 1 && refused.error().contains("would lose 2 textures (vinyl/…)"));
+    assert!(library("vinyl/1").unwrap() == before);
+
+    place.write("library.toml", &RECIPE.replace(first, &format!("{first}\nmissing = \"keep\"")));
+    for _ in 0..2 {
+        let kept = build(&place, "dist", &["--no-removals"]);
+        assert_eq!(kept["kept"], serde_json::json!(["vinyl/1", "vinyl/2"]), "{kept}");
+        assert_eq!([&kept["textures"], &kept["fitted"]], [6, 0]);
+        assert!(library("vinyl/1").unwrap() == before);
+        assert!(place.path("dist/textures/vinyl/1.htex").exists());
+    }
+    assert_eq!(place.run(&["lib", "verify", "dist/surfaces.htexlib"]).code(), 0);
+    let text = place.run(&["build", "library.toml", "-o", "dist"]).text();
+    assert!(text.contains("kept: 2 textures (vinyl/…)"), "{text}");
+
+    // They cannot be kept without the library that has them.
+    fs::remove_file(place.path("dist/surfaces.htexlib")).unwrap();
+    let lost = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert!(lost.code() == 1 && lost.error().contains("library.missing"), "{}", lost.error());
+
+    place.write("library.toml", RECIPE);
+    let removed = build(&place, "dist", &[]);
+    assert_eq!(
+        [&removed["textures"], &removed["removed"][0]],
+        [&Value::from(4), &"vinyl/1".into()]
+    );
+    assert!(!place.path("dist/textures/vinyl/1.htex").exists());
+}
+
+/// A recording that cannot be fitted is not fitted at each build, and each build says so.
+#[test]
+fn a_failed_fit_is_remembered() {
+    let place = place();
+    place.write("rec/short_1.csv", "t_s,fx_n\n0,0.1\n0.001,0.2\n");
+    age(&place.path("rec/short_1.csv"), 60);
+    let left_out = |built: &Value| {
+        let missed = &built["left_out"][0]["missed"][0];
+        (built["left_out"][0]["name"].clone(), missed["gate"].clone(), missed["reason"].clone())
+    };
+    let run = || place.run(&["build", "library.toml", "-o", "dist", "--keep-going", "--json"]);
+    let first: Value = serde_json::from_str(&run().text()).unwrap();
+    let second: Value = serde_json::from_str(&run().text()).unwrap();
+    assert_eq!((&first["fitted"], &second["fitted"]), (&7.into(), &0.into()));
+    assert_eq!(left_out(&first), left_out(&second));
+    assert_eq!(left_out(&first).0, "short/1");
+    let strict = place.run(&["build", "library.toml", "-o", "dist"]);
+    let reason = left_out(&first).2;
+    assert!(strict.code() == 1 && strict.error().contains(reason.as_str().unwrap()));
+
+    // In the formats of continuous integration.
+    let format = |format: &str| {
+        place.run(&["build", "library.toml", "-o", "dist", "--keep-going", "--format", format])
+    };
+    let github = format("github").text();
+    assert!(github.contains("::error file=short/1,title=FIT::"), "{github}");
+    let junit = format("junit").text();
+    assert!(junit.contains("tests=\"7\" failures=\"1\""), "{junit}");
+
+    // Other contents are another recording.
+    place.simulated("rec/short_1.csv", &["--surface", "vinyl", "--seed", "9", "--seconds", "2"]);
+    let mended = build(&place, "dist", &[]);
+    assert_eq!([&mended["fitted"], &mended["textures"]], [1, 7]);
+}
+
+/// A recipe says what its library is, and the index knows what the build measured.
+#[test]
+fn a_recipe_describes_its_library() {
+    let place = place();
+    let first = "[library]\nname = \"surfaces\"";
+    let described =
+        format!("{first}\nversion = \"1.2\"\nauthors = [\"Ana\"]\ndate = \"2026-11-30\"");
+    place.write("library.toml", &RECIPE.replace(first, &described));
+    build(&place, "dist", &[]);
+    let info = place.json(&["lib", "info", "dist/surfaces.htexlib", "--json"]);
+    assert_eq!([&info["version"], &info["authors"][0]], [&Value::from("1.2"), &"Ana".into()]);
+    // What the report says of the model that an app plays.
+    let report: Value = serde_json::from_str(&place.read("dist/build-report.json")).unwrap();
+    let felt = &report["textures"][0]["asset"]["felt"]["org.htex.bands"]["error_rms_db"];
+    let entry = &place.json(&["lib", "ls", "dist/surfaces.htexlib", "--json"])[0];
+    let known = entry["felt_error_rms_db"].as_f64().unwrap();
+    assert!(known >= felt.as_f64().unwrap() && known < felt.as_f64().unwrap() + 0.0101, "{entry}");
+    let wrong = RECIPE.replace(first, &format!("{first}\ndate = \"soon\""));
+    place.write("library.toml", &wrong);
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert!(run.code() == 1 && run.error().contains("library: date is no date"), "{}", run.error());
+}

@@ -4,10 +4,8 @@ use serde_json::Value;
 
 use crate::common::Place;
 
-const OLD: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../spec/library-conformance/valid_version_1_0.htexlib"
-);
+const OLD: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/library-conformance/valid_version_1_0.htexlib");
 
 fn make(place: &Place, name: &str, alpha: &str, level: &str, rights: [&str; 2]) {
     let by = ["make", "--model", "sbeta", "--set", alpha, "beta=5", "--level", level];
@@ -44,11 +42,10 @@ fn a_library_says_what_it_is() {
     let place = place();
     let info = |library: &str| place.json(&["lib", "info", library, "--json"]);
     let said = info("all.htexlib");
-    assert_eq!([&said["name"], &said["version"], &said["textures"]], [
-        &Value::from("All"),
-        &"1.2".into(),
-        &4.into()
-    ]);
+    assert_eq!(
+        [&said["name"], &said["version"], &said["textures"]],
+        [&Value::from("All"), &"1.2".into(), &4.into()]
+    );
     assert_eq!(said["authors"], serde_json::json!(["Ana", "Ben"]));
     assert_eq!(said["licenses"], serde_json::json!({ "CC-BY-4.0": 2, "CC0-1.0": 2 }));
     assert_eq!(said["quantities"], serde_json::json!({ "lateral_force": 4 }));
@@ -61,11 +58,10 @@ fn a_library_says_what_it_is() {
     let edited = place.json(&[&edit[..], &describe, &date].concat());
     assert_eq!(edited["edited"], 0);
     let new = info("all.htexlib");
-    assert_eq!([&new["version"], &new["date"], &new["authors"]], [
-        &"1.3".into(),
-        &"2026-11-30".into(),
-        &Value::Null
-    ]);
+    assert_eq!(
+        [&new["version"], &new["date"], &new["authors"]],
+        [&"1.3".into(), &"2026-11-30".into(), &Value::Null]
+    );
     assert!(new["blake3"] != said["blake3"] && new["bytes"].as_u64() > said["bytes"].as_u64());
     // Other edits keep it, and a merged library is another one.
     place.json(&["lib", "edit", "all.htexlib", "--add-tag", "x", "--json"]);

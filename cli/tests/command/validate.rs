@@ -150,3 +150,35 @@ fn info_says_of_fields_that_are_not_the_models() {
     let newer = shown("valid_field_of_newer_model.htex");
     assert!(newer.contains("the model has no field \"gamma\""), "{newer}");
 }
+
+/// Reports for continuous integration have the files and codes of the text.
+#[test]
+fn findings_are_annotations_and_test_cases() {
+    let place = Place::new();
+    place.write("a.htex", "no asset");
+    let by = |format: &str| place.run(&["validate", "a.htex", "--format", format]);
+    let github = by("github");
+    assert_eq!(github.code(), 1);
+    assert!(github.text().starts_with("::error file=a.htex,title=ARCHIVE_INVALID::"));
+    let junit = by("junit").text();
+    assert!(junit.contains("<testcase name=\"a.htex\"") && junit.contains("failures=\"1\""));
+    assert_eq!(by("json").code(), 2);
+}
+
+/// `--quiet` leaves results and errors; `--verbose` says how long a command took.
+#[test]
+fn commands_are_quiet_or_verbose() {
+    let place = Place::new();
+    let make = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02"];
+    assert_eq!(place.run(&[&make[..], &["-o", "a.htex"]].concat()).code(), 0);
+    // A texture without a condition plays at an assumed motion, which is noted.
+    let synth = |more: &[&str]| {
+        place.run(&[&["synth", "a.htex", "-o", "a.wav", "--speed", "500"], more].concat())
+    };
+    assert!(!synth(&[]).error().is_empty());
+    assert_eq!(synth(&["-q"]).error(), "");
+    assert!(synth(&["--verbose"]).error().contains("note: it took 0."));
+    let failed = place.run(&["-q", "info", "absent.htex"]);
+    assert!(failed.code() == 1 && failed.error().contains("absent.htex"));
+    assert_eq!(place.run(&["-q", "-v", "info", "a.htex"]).code(), 2);
+}

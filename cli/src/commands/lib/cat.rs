@@ -30,6 +30,7 @@ impl Cat {
         if self.output.is_none() && std::io::stdout().is_terminal() {
             return Err(Failure::usage("a texture is not text; name a file for it with -o"));
         }
+        let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
         let bytes = library.get(&self.name).map_err(for_file(&self.library.shown()))?;
         match &self.output {

@@ -12,7 +12,8 @@ use serde::Serialize;
 use super::LibraryArg;
 use crate::differences;
 use crate::failure::{Exit, Failure, Result, for_file};
-use crate::output::{bar, print, show};
+use crate::output::{print, show};
+use crate::progress::bar;
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 ///

@@ -14,8 +14,9 @@ use crate::assets::check_metadata;
 use crate::commands::validate::is_library;
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{bar, show, shown};
+use crate::output::{show, shown};
 use crate::outputs::check_outputs;
+use crate::progress::bar;
 
 /// Change a library: its textures, their metadata, and what it says about itself
 ///

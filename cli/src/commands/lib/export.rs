@@ -14,7 +14,8 @@ use serde::Serialize;
 
 use super::{LibraryArg, check_free};
 use crate::failure::{Exit, Failure, Result, for_file};
-use crate::output::{bar, print, print_json, shown};
+use crate::output::{print, print_json, shown};
+use crate::progress::bar;
 
 /// Name of the table.
 const TABLE: &str = "exported.csv";

@@ -106,6 +106,7 @@ struct Near<'a> {
 impl Find {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
+        let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
         let query = self.query();
         let is_old = library.index().minor_version() == 0;

@@ -60,6 +60,7 @@ struct Counts {
 impl Info {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
+        let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
         let index = library.index();
         let mut info = LibraryInfo {

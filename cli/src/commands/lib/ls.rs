@@ -27,6 +27,7 @@ pub(crate) struct Ls {
 impl Ls {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
+        let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
         note(&library.notes().iter().map(ToString::to_string).collect::<Vec<_>>());
         let mut listing = Listing::new(self.json);

@@ -30,6 +30,7 @@ pub(super) use verify::check;
 use super::subcommands;
 use crate::failure::{Failure, Result, for_file};
 use crate::output::shown;
+use crate::progress::Waiting;
 
 /// Pack, change, list and verify libraries
 ///
@@ -106,6 +107,16 @@ impl LibraryArg {
     fn open(&self) -> Result<Library<LibraryFile>> {
         let storage = Storage::from_environment()?;
         Library::open_located(&storage, &self.0).map_err(for_file(&self.shown()))
+    }
+
+    /// Says after two seconds that the command waits for the library, if it is elsewhere and what is
+    /// returned still exists.
+    fn waiting(&self) -> Result<Option<Waiting>> {
+        if self.local().is_some() {
+            return Ok(None);
+        }
+        let longest = Storage::from_environment()?.settings().total;
+        Ok(Waiting::for_file(self.0.to_string(), longest))
     }
 
     /// Returns the file if it is on this machine.

@@ -16,8 +16,9 @@ use crate::assets::read_asset;
 use crate::commands::validate::is_library;
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{bar, show, shown};
+use crate::output::{show, shown};
 use crate::outputs::check_outputs;
+use crate::progress::bar;
 
 /// Pack textures into a library.
 ///

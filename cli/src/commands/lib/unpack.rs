@@ -6,7 +6,8 @@ use htex_format::library::{Entry, LibraryError, Names};
 
 use super::{LibraryArg, check_free};
 use crate::failure::{Exit, Failure, Result, for_file};
-use crate::output::{bar, print, shown};
+use crate::output::{print, shown};
+use crate::progress::bar;
 
 /// Write the textures of a library to a folder, each as a file NAME.htex.
 ///
@@ -48,6 +49,7 @@ impl From<LibraryError> for Stop {
 impl Unpack {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
+        let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
         let count = if self.names.is_empty() { library.len() } else { self.names.len() as u64 };
         let bar = bar(count);

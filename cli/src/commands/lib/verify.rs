@@ -6,6 +6,7 @@ use htex_format::library::Library;
 
 use crate::commands::validate::show_reports;
 use crate::failure::{Failure, Result, for_file};
+use crate::findings_format::FindingsFormat;
 use crate::located;
 use crate::output::shown;
 
@@ -23,6 +24,10 @@ pub(crate) struct Verify {
     /// you trust, and shows that the library is the one that was published
     #[arg(long, value_name = "HEX", value_parser = blake3)]
     blake3: Option<[u8; 32]>,
+
+    /// Print findings for continuous integration
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "json")]
+    format: Option<FindingsFormat>,
 
     /// Print JSON
     #[arg(long)]
@@ -46,7 +51,7 @@ impl Verify {
             }
         }
         let reports = self.libraries.iter().map(|path| Ok((path.as_path(), check(path)?)));
-        show_reports(reports, self.json)
+        show_reports(reports, self.json, self.format)
     }
 }
 

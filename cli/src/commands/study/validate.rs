@@ -35,6 +35,7 @@ impl Validate {
         show_reports(
             std::iter::once(checked.map(|report| (self.study.as_path(), report))),
             self.json,
+            None,
         )
     }
 

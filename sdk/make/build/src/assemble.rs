@@ -7,7 +7,7 @@ use std::path::Path;
 
 use htex_author::{FeltError, describe, played_model};
 use htex_base::files::AtFile;
-use htex_format::library::{PackSummary, PreparedTexture, Writer};
+use htex_format::library::{Library, LibraryError, PackSummary, PreparedTexture, Writer};
 use htex_format::{Asset, Rights};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ use crate::job::Job;
 use crate::job_result::JobResult;
 use crate::library_build::BuildOptions;
 use crate::plan::{Plan, PlannedTexture};
-use crate::removed::built;
+use crate::removed::{built, library_before, named_briefly};
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
 use crate::state::StateFolder;
 
@@ -58,7 +58,8 @@ pub(crate) fn assemble(
     };
     let library = path.display();
     // All textures are judged before anything is written, so that a refused build changes nothing.
-    if options.no_removals {
+    let most_removed = options.most_removed(plan);
+    if most_removed < usize::MAX {
         let judge = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
             let mut made = found(key, texture)?;
             made.asset = asset(job, &made)?;
@@ -68,8 +69,11 @@ pub(crate) fn assemble(
         let textures = planned.map(judge).collect::<Result<Vec<_>, BuildError>>()?;
         let left_out = textures.iter().filter(|t| t.status == Status::LeftOut);
         let lost = left_out.filter(|t| textures_before.contains(&t.name));
-        BuildError::refuse_removals(lost.map(|t| t.name.clone()).collect())?;
+        let mut lost: Vec<String> = lost.map(|t| t.name.clone()).collect();
+        lost.extend(plan.removed(textures_before));
+        BuildError::refuse_removals(lost, most_removed)?;
     }
+    let kept_textures = KeptTextures::new(plan, dist, textures_before)?;
     let parts = dist.empty_parts()?;
     // Read before the new report replaces it.
     let before = previous(dist);
@@ -89,7 +93,8 @@ pub(crate) fn assemble(
     let textures: Vec<TextureReport> = planned.map(report).collect::<Result<_, BuildError>>()?;
     // Only the reports stay in memory. The library reads each asset again, because all of them
     // together may not fit.
-    let contents = contents(plan, &textures);
+    let contents = contents(plan, &textures, &kept_textures);
+    let kept_names = kept_textures.names();
     let packed = match kept_library(kept, &path, &contents) {
         Some(packed) => packed,
         None => {
@@ -118,6 +123,7 @@ pub(crate) fn assemble(
                     writer.add_prepared(&texture.name, prepared?).map_err(at_place(&library))?;
                 }
             }
+            kept_textures.add_to(&mut writer).map_err(at_place(&library))?;
             let packed = writer.finish().map_err(at_place(&library))?;
             dist.rename(&part, Path::new(&file))?;
             keep_library(kept, &path, contents, &packed)?
@@ -130,8 +136,9 @@ pub(crate) fn assemble(
         report: REPORT.to_owned(),
         program: options.program.clone(),
         error: Vec::new(),
-        library: library_report(plan, file, &packed, &textures),
+        library: library_report(plan, file, &packed, &textures, kept_names.len()),
         removed: plan.removed(textures_before),
+        kept: kept_names,
         felt_shares: felt_shares(&textures),
         findings: shares(&textures),
         textures,
@@ -208,10 +215,56 @@ struct KeptLibrary {
     blake3: String,
 }
 
-fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
+/// Textures of the library before this build that stay in it.
+struct KeptTextures {
+    library: Option<Library>,
+    /// Hashes by name.
+    hashes: BTreeMap<String, [u8; 32]>,
+}
+
+impl KeptTextures {
+    fn new(plan: &Plan, dist: &Dist, before: &BTreeSet<String>) -> Result<Self, BuildError> {
+        let names = plan.kept(before);
+        if names.is_empty() {
+            return Ok(Self { library: None, hashes: BTreeMap::new() });
+        }
+        let library = library_before(dist, &plan.library);
+        let entries = library.iter().flat_map(Library::entries).map_while(Result::ok);
+        let hashes: BTreeMap<String, [u8; 32]> = entries
+            .filter(|entry| names.binary_search(&entry.name).is_ok())
+            .map(|entry| (entry.name, entry.blake3))
+            .collect();
+        let lost: Vec<String> =
+            names.into_iter().filter(|name| !hashes.contains_key(name)).collect();
+        if lost.is_empty() {
+            return Ok(Self { library, hashes });
+        }
+        let problem = format!(
+            "{} textures ({}) are to be kept, and the library in this folder does not have them; copy the library that has them here",
+            lost.len(),
+            named_briefly(&lost)
+        );
+        Err(BuildError::at_place("library.missing", problem))
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.hashes.keys().cloned().collect()
+    }
+
+    fn add_to(self, writer: &mut Writer) -> Result<(), LibraryError> {
+        let Some(library) = self.library else { return Ok(()) };
+        let hashes = self.hashes;
+        writer.add_library(library, |entry| {
+            hashes.contains_key(&entry.name).then(|| entry.name.clone())
+        })
+    }
+}
+
+fn contents(plan: &Plan, textures: &[TextureReport], kept: &KeptTextures) -> String {
     let built = textures.iter().filter(|t| t.status == Status::Built);
     let named = built.map(|t| (&t.name, t.asset.as_ref().map(|asset| &asset.blake3)));
-    let parts = serde_json::json!([plan.library, plan.metadata, named.collect::<Vec<_>>()]);
+    let named: Vec<_> = named.collect();
+    let parts = serde_json::json!([plan.library, plan.metadata, named, kept.hashes]);
     blake3::hash(parts.to_string().as_bytes()).to_hex().to_string()
 }
 
@@ -245,6 +298,7 @@ fn library_report(
     file: String,
     packed: &KeptLibrary,
     textures: &[TextureReport],
+    kept: usize,
 ) -> LibraryReport {
     let built = textures.iter().filter(|t| t.status == Status::Built).count();
     LibraryReport {
@@ -252,7 +306,7 @@ fn library_report(
         file,
         bytes: packed.bytes,
         blake3: packed.blake3.clone(),
-        textures: built,
+        textures: built + kept,
         left_out: textures.len() - built,
     }
 }

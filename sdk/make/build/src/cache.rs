@@ -13,7 +13,7 @@ use std::time::{Duration, SystemTime};
 use htex_base::files::AtFile;
 
 use crate::BuildError;
-use crate::job_result::{JobResult, Outcome};
+use crate::job_result::JobResult;
 use crate::state::{StateFolder, inside};
 
 /// Name of the cache's folder, in the folder of stored data.
@@ -52,12 +52,8 @@ impl Cache {
         path.is_ok_and(|path| path.symlink_metadata().is_ok())
     }
 
-    /// Stores the result for a key. A refusal is not stored, because its cause may be gone the next
-    /// time.
+    /// Stores the result for a key.
     pub(crate) fn put(&self, key: &str, made: &JobResult) -> Result<(), BuildError> {
-        if matches!(made.record.outcome, Outcome::Refused(_)) {
-            return Ok(());
-        }
         self.kept.put(&name(key), &made.to_bytes(key)?)
     }
 

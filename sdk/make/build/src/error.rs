@@ -28,7 +28,7 @@ pub enum BuildError {
     /// Another build is using the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
-    /// The library would lose textures, and the options forbid removals. Nothing was changed.
+    /// The library would lose textures, and the options or the recipe forbid it. Nothing was changed.
     #[error(
         "the library would lose {} textures ({}); bring back their recordings, or allow removals",
         .textures.len(), crate::named_briefly(.textures)
@@ -43,9 +43,9 @@ pub enum BuildError {
 }
 
 impl BuildError {
-    /// Returns an error if there are textures to be removed.
-    pub(crate) fn refuse_removals(textures: Vec<String>) -> Result<(), Self> {
-        if textures.is_empty() { Ok(()) } else { Err(Self::Removes { textures }) }
+    /// Returns an error if more than `most` textures would be removed.
+    pub(crate) fn refuse_removals(textures: Vec<String>, most: usize) -> Result<(), Self> {
+        if textures.len() <= most { Ok(()) } else { Err(Self::Removes { textures }) }
     }
 
     pub(crate) fn at_place(place: impl Display, problem: impl Display) -> Self {

@@ -86,7 +86,8 @@ pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
 pub use reasons::Why;
 pub use recipe::{
-    At, Gates, LibraryPart, ModelGate, NumberOrTemplate, Override, Recipe, Settings, Textures,
+    At, Gates, LibraryPart, MissingTextures, ModelGate, NumberOrTemplate, Override, Recipe,
+    Settings, Textures,
 };
 pub use removed::named_briefly;
 pub use report::{

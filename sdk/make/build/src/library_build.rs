@@ -77,6 +77,11 @@ impl BuildOptions {
         }
     }
 
+    /// Returns the largest number of textures that the library may lose.
+    pub(crate) fn most_removed(&self, plan: &Plan) -> usize {
+        if self.no_removals { 0 } else { plan.max_removed.unwrap_or(usize::MAX) }
+    }
+
     fn missing(&self) -> Missing {
         if self.keep_going { Missing::LeftOut } else { Missing::Error }
     }
@@ -98,6 +103,8 @@ pub struct Build {
     pending: Vec<usize>,
     /// Keys of the textures with a file that cannot be read.
     unreadable: BTreeSet<String>,
+    /// Textures that an earlier build could not make, with the same recordings and settings, and why.
+    failed_before: Vec<(String, String)>,
     /// Results that are not stored for the next build.
     unkept: BTreeMap<String, JobResult>,
     remote: Arc<RemoteFiles>,
@@ -122,9 +129,7 @@ impl Build {
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
         // Refused before the files are hashed, which may take long.
-        if options.no_removals {
-            BuildError::refuse_removals(plan.removed(&before))?;
-        }
+        BuildError::refuse_removals(plan.removed(&before), options.most_removed(&plan))?;
         let pool =
             ThreadPoolBuilder::new().num_threads(options.jobs).build().map_err(at_place("jobs"))?;
         let job =
@@ -146,10 +151,24 @@ impl Build {
         // Stored at once, so that a killed build need not hash the files again.
         kept.put(HASHES, &hashes.to_keep())?;
         let cache = Cache::open(kept.clone())?;
-        let is_pending =
-            |i: &usize| !unkept.contains_key(&jobs[*i].0) && cache.get(&jobs[*i].0).is_none();
+        let failed_before = Mutex::new(Vec::new());
+        let is_pending = |i: &usize| {
+            let (key, job) = &jobs[*i];
+            if unkept.contains_key(key) {
+                return false;
+            }
+            let Some(made) = cache.get(key) else { return true };
+            if let Outcome::Refused(problem) = made.record.outcome {
+                let mut failed = failed_before.lock().unwrap_or_else(PoisonError::into_inner);
+                failed.push((job.texture.clone(), problem));
+            }
+            false
+        };
         let mut pending: Vec<usize> =
             pool.install(|| (0..jobs.len()).into_par_iter().filter(is_pending).collect());
+        let mut failed_before: Vec<_> =
+            failed_before.into_inner().unwrap_or_else(PoisonError::into_inner);
+        failed_before.sort();
         // Textures with the same recordings and settings need only one fit.
         let mut keys = BTreeSet::new();
         pending.retain(|i| keys.insert(&jobs[*i].0));
@@ -163,6 +182,7 @@ impl Build {
             before,
             pending,
             unreadable: unkept.keys().cloned().collect(),
+            failed_before,
             unkept,
             remote,
             pool,
@@ -249,6 +269,11 @@ impl Build {
     /// [`BuildOptions::keep_going`] is false. Results that were finished before the error are
     /// stored.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
+        if let (Some((texture, problem)), false) =
+            (self.failed_before.first(), self.options.keep_going)
+        {
+            return Err(BuildError::at_place(texture, problem));
+        }
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
         let ended = Mutex::new((BTreeMap::new(), None));
@@ -293,24 +318,29 @@ impl Build {
         job: &Job,
         workbench: &mut Workbench,
     ) -> Result<Option<JobResult>, BuildError> {
-        let made = match job.run(workbench) {
+        match job.run(workbench) {
+            // The file may be there the next time.
             Err(error) if self.options.keep_going && is_of_input(&error) => {
-                JobResult::refused(Outcome::Refused(error.to_string()))
+                Ok(Some(JobResult::refused(Outcome::Refused(error.to_string()))))
             }
-            made => made?,
-        };
-        self.keep(key, job, made)
+            made => self.keep(key, job, made?),
+        }
     }
 
     /// Stores the result of a job. If the result cannot be reused by the next build, returns it
-    /// instead.
+    /// instead. A texture that cannot be made of its recordings cannot be made of them the next time
+    /// either, unless a plugin is involved, which may have had too little time or memory.
     fn keep(&self, key: &str, job: &Job, made: JobResult) -> Result<Option<JobResult>, BuildError> {
         let Outcome::Refused(problem) = &made.record.outcome else {
             self.cache.put(key, &made)?;
             return Ok(None);
         };
+        let is_final = job.plugins.is_empty();
+        if is_final {
+            self.cache.put(key, &made)?;
+        }
         if self.options.keep_going {
-            return Ok(Some(made));
+            return Ok(Some(made).filter(|_| !is_final));
         }
         Err(BuildError::at_place(&job.texture, problem))
     }

@@ -13,7 +13,7 @@ use crate::error::at_place;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
 use crate::inputs::{Input, MOST_RECORDINGS, Missing, inputs, slashed, too_many};
-use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
+use crate::recipe::{Gates, MissingTextures, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::remote::RemoteFiles;
 use crate::template::{Fields, fill};
 
@@ -23,6 +23,10 @@ pub struct Plan {
     pub library: String,
     /// What the library says about itself.
     pub metadata: LibraryMetadata,
+    /// What happens to textures of the existing library that are not planned.
+    pub missing: MissingTextures,
+    /// Largest number of textures that the library may lose.
+    pub max_removed: Option<usize>,
     /// The textures, sorted by name.
     pub textures: Vec<PlannedTexture>,
 }
@@ -69,11 +73,26 @@ impl PlannedTexture {
 }
 
 impl Plan {
-    /// Returns those of `names` that no planned texture has.
+    /// Returns those of `names` that no planned texture has, and that the library loses.
     pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
+        match self.missing {
+            MissingTextures::Remove => self.unplanned(names),
+            MissingTextures::Keep => Vec::new(),
+        }
+    }
+
+    /// Returns those of `names` that no planned texture has, and that stay in the library.
+    pub(crate) fn kept(&self, names: &BTreeSet<String>) -> Vec<String> {
+        match self.missing {
+            MissingTextures::Remove => Vec::new(),
+            MissingTextures::Keep => self.unplanned(names),
+        }
+    }
+
+    fn unplanned(&self, names: &BTreeSet<String>) -> Vec<String> {
         let own: BTreeSet<&String> = self.textures.iter().map(|texture| &texture.name).collect();
-        let removed = names.iter().filter(|name| !own.contains(name));
-        removed.cloned().collect()
+        let unplanned = names.iter().filter(|name| !own.contains(name));
+        unplanned.cloned().collect()
     }
 
     /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output`
@@ -119,7 +138,13 @@ impl Plan {
         check_folders(&textures)?;
         let metadata = recipe.library.metadata.clone();
         metadata.check().map_err(at_place("library"))?;
-        Ok(Self { library: recipe.library.name.clone(), metadata, textures })
+        Ok(Self {
+            library: recipe.library.name.clone(),
+            metadata,
+            missing: recipe.library.missing,
+            max_removed: recipe.library.max_removed,
+            textures,
+        })
     }
 }
 

@@ -65,6 +65,25 @@ pub struct LibraryPart {
     /// name them with `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
+    /// What happens to textures of the existing library that the recipe no longer makes, e.g. because
+    /// their recordings are archived.
+    #[serde(default)]
+    pub missing: MissingTextures,
+    /// Largest number of textures that the library may lose. If it would lose more, the build changes
+    /// nothing and ends with an error.
+    #[serde(default)]
+    pub max_removed: Option<usize>,
+}
+
+/// What happens to textures of the existing library that the recipe no longer makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingTextures {
+    /// They are removed.
+    #[default]
+    Remove,
+    /// They stay in the library as they are, byte for byte.
+    Keep,
 }
 
 /// A rule that finds recordings, with the settings of their textures.

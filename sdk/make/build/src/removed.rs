@@ -26,11 +26,10 @@ pub(crate) fn textures_before(
     remote: Option<&Location>,
 ) -> BTreeSet<String> {
     let report = previous(dist);
-    let file = report.as_ref().map(|report| report.library.file.clone());
-    // The report may come from somebody else, so its file must lie in this folder.
-    let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
-    let file = file.filter(is_name).unwrap_or_else(|| format!("{library}.htexlib"));
-    let mut names = in_library(dist, Path::new(&file));
+    let before = library_before(dist, library);
+    let entries = before.iter().flat_map(Library::entries);
+    let mut names: BTreeSet<String> =
+        entries.map_while(Result::ok).map(|entry| entry.name).collect();
     names.extend(report.iter().flat_map(built));
     if names.is_empty() {
         names.extend(remote.and_then(report_at).iter().flat_map(built));
@@ -38,20 +37,22 @@ pub(crate) fn textures_before(
     names
 }
 
-/// Returns the names of the textures that were built according to a report.
+/// Returns the names of the textures that are in the library according to a report.
 pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
     let built = report.textures.iter().filter(|t| t.status == Status::Built);
-    built.map(|texture| texture.name.clone())
+    built.map(|texture| texture.name.clone()).chain(report.kept.iter().cloned())
 }
 
-/// Returns the names in a library's file. If the file is missing or damaged, there are none, and
-/// the build writes the file again.
-fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
+/// Opens the library that the last build wrote. If the file is missing or damaged, there is none,
+/// and the build writes the file again.
+pub(crate) fn library_before(dist: &Dist, library: &str) -> Option<Library> {
+    let file = previous(dist).map(|report| report.library.file);
+    // The report may come from somebody else, so its file must lie in this folder.
+    let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
+    let file = file.filter(is_name).unwrap_or_else(|| format!("{library}.htexlib"));
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
-    let path = dist.path_of(file).ok().filter(|path| is_file(path));
-    let library = path.and_then(|path| Library::open(&path).ok());
-    let entries = library.iter().flat_map(Library::entries);
-    entries.map_while(Result::ok).map(|entry| entry.name).collect()
+    let path = dist.path_of(Path::new(&file)).ok().filter(|path| is_file(path))?;
+    Library::open(&path).ok()
 }
 
 /// Reads the report at a URI.

@@ -35,6 +35,10 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
+    /// Names of textures that stay in the library as an earlier build made them, because the recipe
+    /// no longer makes them and says that they stay.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kept: Vec<String>,
     /// For each model (by id), two counts of textures in the library. The first counts textures
     /// whose difference from the recordings is below the difference threshold at all conditions.
     /// The second counts textures whose difference is within the variation of their recordings.

@@ -93,6 +93,11 @@ impl Storage {
         Self { settings, variables, clients: Arc::default(), named: NameSource::ByPerson }
     }
 
+    /// Returns the time limits and retries.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// Restricts access to the locations that a file, such as a recipe, may name. `origin` is the
     /// location of this file if the file is remote. The only web servers allowed are public servers
     /// and the server of `origin`. The only object stores allowed are the stores that the user's

@@ -1,5 +1,5 @@
 use std::fmt::{Display, Formatter};
-use std::path::PathBuf;
+use std::path::{MAIN_SEPARATOR, PathBuf};
 
 use clap::Args;
 use htex_base::files::{AtFile, read_regular};
@@ -33,8 +33,9 @@ use crate::scene_sound::{Scene, is_scene};
 /// the file states.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset or the scene to export. A scene also states the motion and the models
-    #[arg(value_parser = located::ASSET)]
+    /// The asset or the scene to export. A scene also states the motion and the models. LIBRARY#GLOB
+    /// exports several textures of a library
+    #[arg(value_parser = located::ASSETS)]
     asset: PathBuf,
 
     /// The format to write; `htex formats` describes all formats
@@ -47,7 +48,7 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write. With --to android, the command writes Kotlin if the name ends in .kt, and
+    /// The file to write; for several textures, the folder to write to. With --to android, the command writes Kotlin if the name ends in .kt, and
     /// otherwise JSON. With --to gltf, the command writes JSON if the name ends in .gltf, and
     /// otherwise the binary form (.glb)
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
@@ -93,17 +94,51 @@ struct Settings {
 
 /// The file that was written.
 #[derive(Serialize)]
-struct ExportReport<'a> {
+struct ExportReport {
     file: String,
     bytes: usize,
     #[serde(flatten)]
-    exported: &'a ExportedFile,
+    exported: ExportedFile,
+}
+
+/// The files that were written, one or several.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct ExportReports(Vec<ExportReport>);
+
+impl Display for ExportReports {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        self.0.iter().try_for_each(|report| report.fmt(f))
+    }
 }
 
 impl Export {
-    pub(crate) fn run(self) -> Result {
+    pub(crate) fn run(mut self) -> Result {
         let format = Format::find_for_export(&self.to)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
+        let assets = located::each(std::slice::from_ref(&self.asset));
+        let ends_as_folder = self.output.to_string_lossy().ends_with(['/', MAIN_SEPARATOR]);
+        if let ([asset], false) = (&assets[..], ends_as_folder || self.output.is_dir()) {
+            self.asset.clone_from(asset);
+            return show(&self.write(format)?, self.json);
+        }
+        let folder = self.output.clone();
+        let mut reports = Vec::new();
+        for asset in assets {
+            let own = asset.file_name().map(PathBuf::from).unwrap_or_default();
+            let name = located::texture_name(&asset).unwrap_or(own);
+            let extension = format.extensions.first().copied().unwrap_or(format.name);
+            self.output = folder.join(name.with_extension(extension));
+            let parent = self.output.parent().unwrap_or(&folder);
+            std::fs::create_dir_all(parent).writing(parent)?;
+            self.asset = asset;
+            reports.push(self.write(format)?);
+        }
+        show(&ExportReports(reports), self.json)
+    }
+
+    /// Exports one texture or scene to the output.
+    fn write(&self, format: &'static Format) -> Result<ExportReport> {
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
         write_file(&self.output, &exported.bytes)?;
@@ -111,7 +146,7 @@ impl Export {
             note(&exported.notes);
         }
         let (file, bytes) = (self.output.display().to_string(), exported.bytes.len());
-        show(&ExportReport { file, bytes, exported: &exported }, self.json)
+        Ok(ExportReport { file, bytes, exported })
     }
 
     fn of_asset(&self, format: &'static Format) -> Result<ExportedFile> {
@@ -177,7 +212,7 @@ impl Export {
     }
 }
 
-impl Display for ExportReport<'_> {
+impl Display for ExportReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { file, bytes, exported } = self;
         let played = exported.played.as_ref();

@@ -224,3 +224,18 @@ fn a_catalogue_is_a_filled_page_beside_the_library() {
         assert_eq!(catalogue(&["-o", "remote", "--url", url]).code(), 2, "{url}");
     }
 }
+
+#[test]
+fn several_textures_are_exported_to_a_folder() {
+    let place = place();
+    let export = |asset: &str, output: &str| {
+        place.run(&["export", asset, "--to", "haptic", "-o", output, "--json"])
+    };
+    let several: Value = serde_json::from_str(&export("all.htexlib#cotton*", "out").text()).unwrap();
+    assert_eq!(several.as_array().unwrap().len(), 2, "{several}");
+    assert_eq!(export("all.htexlib#cotton", "one.haptic").code(), 0);
+    let bytes = |file: &str| std::fs::read(place.path(file)).unwrap();
+    assert!(bytes("out/cotton.haptic") == bytes("one.haptic"));
+    assert!(place.path("out/cotton again.haptic").exists());
+    assert_eq!(export("all.htexlib#none*", "none").code(), 1);
+}

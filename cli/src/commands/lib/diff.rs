@@ -1,12 +1,11 @@
-use std::cmp::Ordering;
-use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
+use std::path::Path;
 
 use clap::Args;
 use htex_author::TextureDifference;
 use htex_base::finding::plain;
 use htex_format::Asset;
-use htex_format::library::{Entry, Library, LibraryFile};
+use htex_format::library::{Entry, Library, LibraryDifference, LibraryFile};
 use serde::Serialize;
 
 use super::LibraryArg;
@@ -80,30 +79,15 @@ struct Changed {
     difference: TextureDifference,
 }
 
-/// An iterator over a library's entries that also shows the next entry before it is taken.
-struct Walk<'a> {
-    library: &'a LibraryArg,
-    entries: htex_format::library::Entries<'a, LibraryFile>,
-    next: Option<Entry>,
-}
-
-/// A texture of a library, as the comparison finds it.
-enum Found {
-    Removed(Entry),
-    Added(Entry),
-    Changed(Box<(Entry, Entry)>),
-}
-
 impl Diff {
     pub(crate) fn run(self) -> Result {
         let (a, b) = (self.a.open()?, self.b.open()?);
-        // Equal indexes have the same textures under the same names.
-        let is_same = a.index().blake3() == b.index().blake3();
-        let found = if is_same {
-            Vec::new()
-        } else {
-            compare(Walk::new(&self.a, &a)?, Walk::new(&self.b, &b)?)?
+        let (file_a, file_b) = (self.a.shown(), self.b.shown());
+        let of = |file: &Path| {
+            let file = file.to_owned();
+            move |error| Failure::from(error).in_file(&file)
         };
+        let found = LibraryDifference::between(&a, &b, of(&file_a), of(&file_b))?;
         if !self.details {
             let differences = Differences::new(found);
             show(&differences, self.json)?;
@@ -125,28 +109,17 @@ impl Diff {
         &self,
         a: &Library<LibraryFile>,
         b: &Library<LibraryFile>,
-        found: Vec<Found>,
+        found: LibraryDifference,
     ) -> Result<Details> {
-        let mut details = Details::default();
-        let (mut added, mut changed) = (BTreeMap::new(), Vec::new());
-        let mut removed = Vec::new();
-        for one in found {
-            match one {
-                Found::Removed(entry) => removed.push(entry),
-                Found::Added(entry) => {
-                    added.entry(entry.blake3).or_insert_with(Vec::new).push(entry.name);
-                }
-                Found::Changed(both) => changed.push(*both),
-            }
-        }
-        for entry in removed {
-            match added.get_mut(&entry.blake3).and_then(Vec::pop) {
-                Some(to) => details.renamed.push(Renamed { from: entry.name, to }),
-                None => details.removed.push(entry.name),
-            }
-        }
-        details.added = added.into_values().flatten().collect();
-        details.added.sort_unstable();
+        let LibraryDifference { removed, added, renamed, changed } = found.find_renamed();
+        let named = |entries: Vec<Entry>| entries.into_iter().map(|entry| entry.name).collect();
+        let renamed = renamed.into_iter();
+        let mut details = Details {
+            removed: named(removed),
+            added: named(added),
+            renamed: renamed.map(|(a, b)| Renamed { from: a.name, to: b.name }).collect(),
+            changed: Vec::new(),
+        };
         let bar = bar(changed.len() as u64);
         for (of_a, of_b) in changed {
             let open = |library: &Library<LibraryFile>, argument: &LibraryArg, entry: &Entry| {
@@ -174,56 +147,14 @@ fn felt_limit(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "give felt= and decibels, such as felt=1.6".to_owned())
 }
 
-impl<'a> Walk<'a> {
-    fn new(argument: &'a LibraryArg, library: &'a Library<LibraryFile>) -> Result<Self> {
-        let mut walk = Self { library: argument, entries: library.entries(), next: None };
-        walk.step()?;
-        Ok(walk)
-    }
-
-    /// Takes the next entry.
-    fn step(&mut self) -> Result<Option<Entry>> {
-        let next = self.entries.next().transpose().map_err(for_file(&self.library.shown()))?;
-        Ok(std::mem::replace(&mut self.next, next))
-    }
-}
-
-/// Compares two libraries by walking through both in the order of the names.
-fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Vec<Found>> {
-    let mut found = Vec::new();
-    loop {
-        let order = match (&a.next, &b.next) {
-            (None, None) => return Ok(found),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (Some(a), Some(b)) => a.name.cmp(&b.name),
-        };
-        // Only one entry of each library is in memory, and those that differ, because a library may
-        // have any number of them.
-        let ours = if order.is_le() { a.step()? } else { None };
-        let theirs = if order.is_ge() { b.step()? } else { None };
-        match (ours, theirs) {
-            (Some(a), Some(b)) if a.blake3 != b.blake3 => {
-                found.push(Found::Changed(Box::new((a, b))))
-            }
-            (Some(a), None) => found.push(Found::Removed(a)),
-            (None, Some(b)) => found.push(Found::Added(b)),
-            _ => {}
-        }
-    }
-}
-
 impl Differences {
-    fn new(found: Vec<Found>) -> Self {
-        let mut all = Self::default();
-        for one in found {
-            match one {
-                Found::Removed(entry) => all.only_in_a.push(entry.name),
-                Found::Added(entry) => all.only_in_b.push(entry.name),
-                Found::Changed(both) => all.changed.push(both.0.name),
-            }
+    fn new(found: LibraryDifference) -> Self {
+        let named = |entries: Vec<Entry>| entries.into_iter().map(|entry| entry.name).collect();
+        Self {
+            only_in_a: named(found.removed),
+            only_in_b: named(found.added),
+            changed: found.changed.into_iter().map(|(a, _)| a.name).collect(),
         }
-        all
     }
 
     fn is_empty(&self) -> bool {

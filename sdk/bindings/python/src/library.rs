@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use htex::format::Asset;
 use htex::library::storage::{Location, Storage};
 use htex::library::{
-    Entry, Interval, LibraryError, LibraryFile, LibraryMetadata, LibrarySource as Bytes, Query,
+    Entry, Interval, LibraryDifference, LibraryError, LibraryFile, LibraryMetadata, LibrarySource as Bytes, Query,
     Writer,
 };
 use htex_author::settings::Metadata;
@@ -193,6 +193,26 @@ impl Library {
         let found = py.detach(|| self.library.duplicates(&Query::default(), within_db));
         let found = found.map_err(raised)?.into_iter();
         Ok(found.map(|one| (one.entry.name, one.of, one.distance_db)).collect())
+    }
+
+    /// Compares this library with a newer one by names and hashes: the names of textures that were
+    /// removed, added and changed, and pairs of old and new names of textures that were renamed.
+    fn diff<'py>(&self, py: Python<'py>, newer: &Self) -> PyResult<Bound<'py, PyAny>> {
+        let same = |error: LibraryError| error;
+        let found =
+            py.detach(|| LibraryDifference::between(&self.library, &newer.library, same, same));
+        let LibraryDifference { removed, added, renamed, changed, .. } =
+            found.map_err(raised)?.find_renamed();
+        let named = |entries: Vec<Entry>| {
+            entries.into_iter().map(|entry| entry.name).collect::<Vec<String>>()
+        };
+        let fields = PyDict::new(py);
+        fields.set_item("removed", named(removed))?;
+        fields.set_item("added", named(added))?;
+        let renamed = renamed.into_iter().map(|(from, to)| (from.name, to.name));
+        fields.set_item("renamed", renamed.collect::<Vec<_>>())?;
+        fields.set_item("changed", named(changed.into_iter().map(|(a, _)| a).collect()))?;
+        data(py, "LibraryDifference", &fields)
     }
 
     /// Returns the entry of the texture with this name.

@@ -123,7 +123,11 @@ def test_a_worker_that_is_killed_and_one_that_hangs_change_nothing(
                 hanging.send_signal(signal.SIGSTOP)
                 cluster.start_worker()
 
-        report = htex.dask.build(recipe, client, recipe.parent / "dask", shard_bytes=1, done=disturb)
+        told: list[tuple[int, int]] = []
+        report = htex.dask.build(
+            recipe, client, recipe.parent / "dask", shard_bytes=1, done=disturb, progress=lambda ended, all: told.append((ended, all))
+        )
+    assert told[0][0] == 0 and told[-1] == (told[0][1], told[0][1]) and sorted(told) == told
     assert report["library"]["textures"] == 12
     assert len(done) == len(set(done)) == 12
     assert results(recipe.parent / "dask") == local

@@ -126,3 +126,51 @@ def test_what_is_wrong_is_an_exception_and_leaves_nothing(place: pathlib.Path, t
     whole = (place / "three.htexlib").read_bytes()
     with pytest.raises(htex.LibraryError, match="LIBRARY_TRUNCATED"):
         htex.Library(whole[:-1])
+
+
+def test_a_library_says_what_it_is(place: pathlib.Path, library: htex.Library, tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "described.htexlib"
+    htex.Library.edit(place / "three.htexlib", path, describe={"version": "1.2", "authors": "Ana; Ben"})
+    described = htex.Library(path)
+    assert described.metadata == {"version": "1.2", "authors": ["Ana", "Ben"]} and library.metadata == {}
+    said = json.loads(command("lib", "info", str(path), "--json", cwd=place).stdout)
+    assert (said["version"], said["blake3"]) == ("1.2", described.blake3)
+    htex.Library.merge([path], tmp_path / "merged.htexlib", describe={"date": "2026-11-30"})
+    assert htex.Library(tmp_path / "merged.htexlib").metadata == {"date": "2026-11-30"}
+    with pytest.raises(htex.OptionError, match="date is no date"):
+        htex.pack(tmp_path / "none.htexlib", {}, describe={"date": "soon"})
+    assert not (tmp_path / "none.htexlib").exists()
+
+
+def test_searches_by_rights_and_spectra_are_those_of_the_command(place: pathlib.Path, library: htex.Library) -> None:
+    def by_command(*asked: str) -> list[dict[str, object]]:
+        found = command("lib", "find", "three.htexlib", *asked, "--json", cwd=place).stdout
+        return list(json.loads(found))
+
+    licences = {entry.license for entry in library.entries}
+    assert licences and None not in licences
+    some = next(iter(licences))
+    assert some is not None
+    assert [e.name for e in library.find(license=some[:2] + "*")] == [e["name"] for e in by_command("--license", some[:2] + "*")]
+    assert {entry.quantity for entry in library.entries} == {"lateral_force"}
+    assert library.find(quantity="acceleration") == [] == library.find(license="none")
+    with pytest.raises(htex.OptionError, match="lateral_force"):
+        library.find(quantity="weight")
+    near = library.similar("woven/a")
+    assert [(round(db, 2), entry.name) for db, entry in near] == [(e["distance_db"], e["name"]) for e in by_command("--like", "woven/a")]
+    assert near[0][0] == 0 and near[0][1] == library.entry("woven/a")
+    twice = [(name, of) for name, of, _ in library.duplicates(60)]
+    assert twice == [(e["name"], e["duplicate_of"]) for e in by_command("--duplicates", "--within", "60")]
+
+
+def test_two_libraries_are_compared(place: pathlib.Path, library: htex.Library, tmp_path: pathlib.Path) -> None:
+    new = tmp_path / "new.htexlib"
+    htex.Library.edit(place / "three.htexlib", new, remove=["woven/b"], rename={"Felt": "felt"})
+    htex.Library.edit(new, metadata={"description": "Changed"}, filters={"name": "woven/a"})
+    difference = library.diff(htex.Library(new))
+    assert difference.renamed == [("Felt", "felt")] and difference.changed == ["woven/a"]
+    assert (difference.removed, difference.added) == (["woven/b"], [])
+    back = htex.Library(new).diff(library)
+    assert (back.removed, back.added) == ([], ["woven/b"])
+    same = library.diff(library)
+    assert (same.removed, same.added, same.renamed, same.changed) == ([], [], [], [])

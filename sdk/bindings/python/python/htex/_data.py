@@ -67,6 +67,20 @@ class LibraryEntry:
 
 
 @dataclass(frozen=True)
+class LibraryDifference:
+    """How a newer library differs from an older one."""
+
+    removed: list[str]
+    """Names of textures that only the older library has."""
+    added: list[str]
+    """Names of textures that only the newer library has."""
+    renamed: list[tuple[str, str]]
+    """Old and new names of textures with the same bytes."""
+    changed: list[str]
+    """Names of textures with other bytes."""
+
+
+@dataclass(frozen=True)
 class LibraryChange:
     """What ``Library.edit`` changed, and the library that it wrote."""
 

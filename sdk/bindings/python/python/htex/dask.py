@@ -55,6 +55,7 @@ def build(
     shard_bytes: int = 64_000_000,
     patience_s: float = 300.0,
     done: Callable[[str], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe on a Dask cluster.
 
@@ -80,6 +81,8 @@ def build(
             with larger recordings gets a turn of its own.
         patience_s: Longest time to wait for a scheduler or workers that cannot be reached, seconds.
         done: A function that is called with the key of each finished job.
+        progress: A function that is called with the number of fits that are finished and the number
+            of all fits of this build: at the beginning, and after each shard.
 
     Returns:
         The report, as in ``build-report.json``.
@@ -108,6 +111,9 @@ def build(
             break  # What is still not known has just changed; it is read here.
     named = [os.fspath(plugin) for plugin in plugins]
     planned = _htex.Build(source, os.fspath(output), keep_going, work, named, no_removals)
+    total = len(planned.pending())
+    if progress is not None:
+        progress(0, total)
     while pending := planned.pending():
         with patience:
             for results in _results(client, _run, list(_shards(pending, shard_bytes))):
@@ -115,6 +121,8 @@ def build(
                     planned.store(key, made)
                     if done is not None:
                         done(key)
+                if progress is not None:
+                    progress(total - len(planned.pending()), total)
                 patience.renew()
     return planned.finish()
 

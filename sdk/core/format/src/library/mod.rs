@@ -43,6 +43,7 @@
 mod address;
 mod coarse_spectrum;
 mod description;
+mod difference;
 #[cfg(feature = "write")]
 mod encode;
 mod entry;
@@ -91,6 +92,7 @@ mod writer;
 pub use address::split_address;
 pub use coarse_spectrum::CoarseSpectrum;
 pub use description::Description;
+pub use difference::LibraryDifference;
 pub use entry::{Conditions, Entry, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};

@@ -754,3 +754,31 @@ fn a_recipe_describes_its_library() {
     let run = place.run(&["build", "library.toml", "-o", "dist"]);
     assert!(run.code() == 1 && run.error().contains("library: date is no date"), "{}", run.error());
 }
+
+/// Two builds of a part each, merged, have what one build of both has.
+#[test]
+fn merged_builds_are_the_build_of_all() {
+    let place = place();
+    let whole = build(&place, "whole", &[]);
+    for part in ["vinyl", "sandpaper"] {
+        let recipe = RECIPE.replace("rec/*.csv", &format!("rec/{part}*.csv"));
+        place.write("library.toml", &recipe);
+        build(&place, part, &[]);
+    }
+    place.write("library.toml", &RECIPE.replace("rec/*.csv", "rec/fine*.csv"));
+    build(&place, "fine", &[]);
+    let merge = ["lib", "merge", "vinyl", "sandpaper", "fine", "-o", "dist", "--name", "surfaces"];
+    let merged = place.json(&[&merge[..], &["--json"]].concat());
+    assert_eq!([&merged["textures"], &merged["left_out"]], [&whole["textures"], &0.into()]);
+    let (ours, theirs) = (results(&place.path("dist")), results(&place.path("whole")));
+    assert_same(&ours, &theirs);
+    let prefixed = [&merge[..6], &["prefixed", "--prefix", "a/,b/,c/"]].concat();
+    assert_eq!(place.run(&prefixed).code(), 0);
+    assert!(place.path("prefixed/textures/b/sandpaper/1.htex").exists());
+    assert_eq!(place.run(&["lib", "verify", "prefixed/library.htexlib"]).code(), 0);
+
+    let again = place.run(&["lib", "merge", "vinyl", "rec", "-o", "none"]);
+    assert!(again.code() == 1 && again.error().contains("no build has written this folder"));
+    let mixed = place.run(&["lib", "merge", "vinyl", "vinyl/surfaces.htexlib", "-o", "none"]);
+    assert_eq!(mixed.code(), 2);
+}

@@ -231,7 +231,8 @@ fn several_textures_are_exported_to_a_folder() {
     let export = |asset: &str, output: &str| {
         place.run(&["export", asset, "--to", "haptic", "-o", output, "--json"])
     };
-    let several: Value = serde_json::from_str(&export("all.htexlib#cotton*", "out").text()).unwrap();
+    let several: Value =
+        serde_json::from_str(&export("all.htexlib#cotton*", "out").text()).unwrap();
     assert_eq!(several.as_array().unwrap().len(), 2, "{several}");
     assert_eq!(export("all.htexlib#cotton", "one.haptic").code(), 0);
     let bytes = |file: &str| std::fs::read(place.path(file)).unwrap();

@@ -1,8 +1,10 @@
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use htex_build::{LibraryMerge, OnConflict};
+use htex_build::{BuildsMerge, LibraryMerge, LibraryReport, OnConflict};
 use htex_format::library::LibraryMetadata;
+use serde::Serialize;
 
 use super::described;
 use super::pack::PackReport;
@@ -11,18 +13,22 @@ use crate::located;
 use crate::output::show;
 use crate::outputs::check_outputs;
 
-/// Merge libraries into one
+/// Merge libraries into one, or the results of several builds
 ///
 /// All textures stay the same, byte for byte. The result is the library that `htex lib pack` would
 /// write of all their textures. Equal textures of one name are no conflict.
+///
+/// If you give folders that `htex build` wrote, the command merges them into a folder: their
+/// libraries, textures, sounds, reports and pages. Machines that each build a part of a library can
+/// make the whole library in this way.
 #[derive(Args)]
 pub(crate) struct Merge {
-    /// The libraries
-    #[arg(required = true, num_args = 1.., value_name = "LIBRARY", value_parser = located::RECORDING)]
+    /// The libraries, or the folders of the builds
+    #[arg(required = true, num_args = 1.., value_name = "LIBRARY|DIR", value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 
-    /// The library to write
-    #[arg(short, long, value_name = "HTEXLIB", value_parser = located::OUTPUT)]
+    /// The library to write, or the folder
+    #[arg(short, long, value_name = "HTEXLIB|DIR", value_parser = located::OUTPUT)]
     output: PathBuf,
 
     /// Texts to put before the names, one for each library, e.g. wood/,cloth/
@@ -33,7 +39,7 @@ pub(crate) struct Merge {
     #[arg(long, value_enum, default_value = "error")]
     on_conflict: Conflict,
 
-    /// Name of the merged library [default: the file's name]
+    /// Name of the merged library [default: the file's name, or `library` in a folder]
     #[arg(long)]
     name: Option<String>,
 
@@ -57,6 +63,26 @@ enum Conflict {
     Last,
 }
 
+/// The merged folder.
+#[derive(Serialize)]
+struct MergedBuilds {
+    folder: String,
+    library: String,
+    bytes: u64,
+    textures: usize,
+    left_out: usize,
+}
+
+impl Display for MergedBuilds {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { folder, library, bytes, textures, left_out } = self;
+        writeln!(
+            f,
+            "{folder}: {textures} textures in {library}, {bytes} bytes; {left_out} left out"
+        )
+    }
+}
+
 impl Merge {
     pub(crate) fn run(self) -> Result {
         let Self { libraries, output, prefix, .. } = self;
@@ -68,15 +94,29 @@ impl Merge {
             )));
         }
         let prefixes = prefix.into_iter().chain(std::iter::repeat(String::new()));
-        let merge = LibraryMerge {
-            libraries: libraries.into_iter().zip(prefixes).collect(),
-            on_conflict: match self.on_conflict {
-                Conflict::Error => OnConflict::Error,
-                Conflict::First => OnConflict::First,
-                Conflict::Last => OnConflict::Last,
-            },
-            metadata: described(&LibraryMetadata::default(), &self.describe)?,
+        let folders = libraries.iter().filter(|path| path.is_dir()).count();
+        if folders > 0 && folders < libraries.len() {
+            return Err(Failure::usage("some are folders and some are libraries; give one kind"));
+        }
+        let on_conflict = match self.on_conflict {
+            Conflict::Error => OnConflict::Error,
+            Conflict::First => OnConflict::First,
+            Conflict::Last => OnConflict::Last,
         };
+        let metadata = described(&LibraryMetadata::default(), &self.describe)?;
+        let parts = libraries.into_iter().zip(prefixes).collect();
+        if folders > 0 {
+            let name = self.name.unwrap_or_else(|| "library".to_owned());
+            let merge = BuildsMerge { folders: parts, on_conflict, metadata };
+            let LibraryReport { file, bytes, textures, left_out, .. } =
+                merge.run(&output, &name)?.library;
+            let folder = output.display().to_string();
+            return show(
+                &MergedBuilds { folder, library: file, bytes, textures, left_out },
+                self.json,
+            );
+        }
+        let merge = LibraryMerge { libraries: parts, on_conflict, metadata };
         let stem = output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let name = self.name.unwrap_or(stem);
         let packed = merge.run(&output, &name)?;

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use htex::format::Asset;
 use htex::library::storage::{Location, Storage};
 use htex::library::{
-    Entry, Interval, LibraryDifference, LibraryError, LibraryFile, LibraryMetadata, LibrarySource as Bytes, Query,
-    Writer,
+    Entry, Interval, LibraryDifference, LibraryError, LibraryFile, LibraryMetadata,
+    LibrarySource as Bytes, Query, Writer,
 };
 use htex_author::settings::Metadata;
 use htex_build::{Addition, BuildError, LibraryEdit, LibraryMerge, OnConflict};

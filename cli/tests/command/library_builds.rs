@@ -744,7 +744,9 @@ fn a_recipe_describes_its_library() {
     let info = place.json(&["lib", "info", "dist/surfaces.htexlib", "--json"]);
     assert_eq!([&info["version"], &info["authors"][0]], [&Value::from("1.2"), &"Ana".into()]);
     // What the report says of the model that an app plays.
-    let report: Value = serde_json::from_str(&place.read("dist/build-report.json")).unwrap();
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(place.path("dist/build-report.json")).unwrap())
+            .unwrap();
     let felt = &report["textures"][0]["asset"]["felt"]["org.htex.bands"]["error_rms_db"];
     let entry = &place.json(&["lib", "ls", "dist/surfaces.htexlib", "--json"])[0];
     let known = entry["felt_error_rms_db"].as_f64().unwrap();

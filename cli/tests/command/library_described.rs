@@ -204,7 +204,7 @@ fn a_catalogue_is_a_filled_page_beside_the_library() {
     place.write("report.json", report);
     let written = catalogue(&["-o", "site", "--report", "report.json"]);
     assert_eq!(written.code(), 0, "{}", written.error());
-    let page = place.read("site/index.html");
+    let page = std::fs::read_to_string(place.path("site/index.html")).unwrap();
     assert!(page.contains("<title>All</title>") && page.contains("connect-src 'self';"), "{page}");
     assert!(page.contains(r#""library":"odd%20%231.htexlib""#), "{page}");
     assert!(page.contains(r#""leftOut":[{"name":"gone","reasons":["it is clipped"]}]"#), "{page}");
@@ -216,7 +216,7 @@ fn a_catalogue_is_a_filled_page_beside_the_library() {
 
     let url = ["--url", "https://textures.example:8443/a/b.htexlib?v=1"];
     assert_eq!(catalogue(&[&["-o", "remote"], &url[..]].concat()).code(), 0);
-    let page = place.read("remote/index.html");
+    let page = std::fs::read_to_string(place.path("remote/index.html")).unwrap();
     assert!(page.contains("connect-src 'self' https://textures.example:8443;"), "{page}");
     assert!(page.contains("<script id=\"textures\"></script>"), "{page}");
     assert!(!place.path("remote/odd #1.htexlib").exists());

@@ -170,8 +170,9 @@ fn findings_are_annotations_and_test_cases() {
 fn commands_are_quiet_or_verbose() {
     let place = Place::new();
     let make = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02"];
-    assert_eq!(place.run(&[&make[..], &["-o", "a.htex"]].concat()).code(), 0);
-    // A texture without a condition plays at an assumed motion, which is noted.
+    let at = ["--at", "speed=80,force=0.5", "-o", "a.htex"];
+    assert_eq!(place.run(&[&make[..], &at].concat()).code(), 0);
+    // A motion that was not recorded is a warning.
     let synth = |more: &[&str]| {
         place.run(&[&["synth", "a.htex", "-o", "a.wav", "--speed", "500"], more].concat())
     };

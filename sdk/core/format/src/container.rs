@@ -9,7 +9,7 @@ use crate::limits::Limits;
 use crate::rules::FILE_TOO_LARGE;
 use crate::validate::inspect;
 use crate::{Asset, ReadError, block};
-use htex_base::finding::Findings;
+use htex_base::finding::{Finding, Findings};
 
 impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].
@@ -26,8 +26,22 @@ impl Asset {
     /// # Errors
     /// The errors of [`Self::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
-        let (asset, findings) = inspect(bytes, limits, &|_| None);
-        asset.ok_or(ReadError::Invalid { findings })
+        Self::from_bytes_with_findings(bytes, limits).map(|(asset, _)| asset)
+    }
+
+    /// Reads an asset from bytes, within the given limits. Also returns all findings, which are no
+    /// errors.
+    ///
+    /// # Errors
+    /// The errors of [`Self::from_bytes`].
+    pub fn from_bytes_with_findings(
+        bytes: &[u8],
+        limits: &Limits,
+    ) -> Result<(Self, Vec<Finding>), ReadError> {
+        match inspect(bytes, limits, &|_| None) {
+            (Some(asset), findings) => Ok((asset, findings)),
+            (None, findings) => Err(ReadError::Invalid { findings }),
+        }
     }
 
     /// Reads an asset from a file, within the default [`Limits`]. With the feature `library`,

@@ -90,4 +90,4 @@ pub use rules::{
 };
 pub use stages::{STAGES, rules_of};
 pub use triangles::{Triangle, TrianglesError, check_triangles};
-pub use validate::{manifest_json, validate, validate_with};
+pub use validate::{manifest_bytes, manifest_json, validate, validate_with};

@@ -36,10 +36,15 @@ pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Re
 /// Returns an asset's manifest as JSON, even if the manifest is not valid. Returns `None` if the
 /// manifest cannot be unpacked or is not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
+    parse_json(&manifest_bytes(bytes, limits)?).ok()
+}
+
+/// Returns the bytes of an asset's manifest, even if the manifest is not valid. Returns `None` if the
+/// manifest cannot be unpacked.
+pub fn manifest_bytes(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
-    let entry = &archive.entries[archive.index(MANIFEST)?];
-    parse_json(&entry.bytes).ok()
+    Some(archive.entries[archive.index(MANIFEST)?].bytes.to_vec())
 }
 
 /// Reads an asset and returns it with all findings. The asset is `None` if one of the findings is

@@ -1,5 +1,6 @@
 //! Edits an asset's metadata without a new fit.
 
+use htex_base::finding::Finding;
 use htex_format::{Asset, Limits};
 use serde_json::Value;
 
@@ -12,8 +13,9 @@ use crate::settings::Metadata;
 /// # Errors
 /// When the bytes are not a valid asset, or when saving the changed asset would lose data.
 pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
-    let mut asset = Asset::from_bytes(bytes)?;
-    let lost = lost(bytes, &asset);
+    let limits = Limits::default();
+    let (mut asset, findings) = Asset::from_bytes_with_findings(bytes, &limits)?;
+    let lost = lost(bytes, &limits, &asset, &findings);
     if !lost.is_empty() {
         return Err(AuthorError::EditLoses { lost });
     }
@@ -22,16 +24,16 @@ pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
 }
 
 /// Returns what would be lost if the asset were written again.
-fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
-    let limits = Limits::default();
-    let report = htex_format::validate(bytes, &limits);
-    let unnamed = report.findings.iter().filter(|finding| finding.code == "ENTRY_UNREFERENCED");
+fn lost(bytes: &[u8], limits: &Limits, asset: &Asset, findings: &[Finding]) -> Vec<String> {
+    let unnamed = findings.iter().filter(|finding| finding.code == "ENTRY_UNREFERENCED");
     let mut lost: Vec<String> = unnamed.map(|finding| finding.message.clone()).collect();
     // Converted through JSON text, as it would be written to the file.
     let written = serde_json::to_vec(&asset.manifest).unwrap_or_default();
-    let written = htex_format::parse_json(&written).unwrap_or_default();
-    if let Some(read) = htex_format::manifest_json(bytes, &limits) {
-        lost_keys(&read, &written, "", &mut lost);
+    let read = htex_format::manifest_bytes(bytes, limits).unwrap_or_default();
+    // A manifest that this program wrote has the same bytes, and loses nothing.
+    if read != written {
+        let json = |text: &[u8]| htex_format::parse_json(text).unwrap_or_default();
+        lost_keys(&json(&read), &json(&written), "", &mut lost);
     }
     lost
 }

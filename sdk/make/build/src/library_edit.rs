@@ -196,26 +196,40 @@ impl Run<'_> {
         mut name: impl FnMut(&Entry, bool) -> Option<String>,
     ) -> Result<(), BuildError> {
         let of_library = |error: LibraryError| BuildError::at_place(path.display(), error);
-        let mut kept: BTreeMap<String, String> = BTreeMap::new();
+        let mut kept = Vec::with_capacity(usize::try_from(library.len()).unwrap_or_default());
         let mut batch = Vec::new();
         for entry in library.entries() {
             let entry = entry.map_err(of_library)?;
             let manifest = OnceCell::new();
             let read = || self.manifest(&manifest, &library, &entry).map_err(of_library);
             let is_chosen = Filter::all(&self.edit.filters, &entry, &read)?;
-            let Some(name) = name(&entry, is_chosen) else { continue };
+            let Some(name) = name(&entry, is_chosen) else {
+                kept.push(Kept::No);
+                continue;
+            };
             let row = self.table.take(&entry.name);
             if (is_chosen && self.edit.changes_all()) || row.is_some() {
-                batch.push(Pending { entry, name, is_chosen, row });
+                batch.push(Pending { index: kept.len(), entry, name, is_chosen, row });
+                // Unless nothing changes.
+                kept.push(Kept::No);
                 if batch.len() == BATCH {
                     self.edit_batch(path, &library, &mut batch, &mut kept)?;
                 }
             } else {
-                kept.insert(entry.name, name);
+                kept.push(Kept::new(&entry, name));
             }
         }
         self.edit_batch(path, &library, &mut batch, &mut kept)?;
-        let added = self.writer.add_library(library, |entry| kept.remove(&entry.name));
+        if kept.iter().all(|kept| matches!(kept, Kept::No)) {
+            return Ok(());
+        }
+        // The entries come again in the same order.
+        let mut kept = kept.into_iter();
+        let added = self.writer.add_library(library, |entry| match kept.next() {
+            Some(Kept::Same) => Some(entry.name.clone()),
+            Some(Kept::As(name)) => Some(name),
+            Some(Kept::No) | None => None,
+        });
         added.map_err(of_library)
     }
 
@@ -242,7 +256,7 @@ impl Run<'_> {
         path: &Path,
         library: &Library,
         batch: &mut Vec<Pending>,
-        kept: &mut BTreeMap<String, String>,
+        kept: &mut [Kept],
     ) -> Result<(), BuildError> {
         let edit = self.edit;
         // Metadata change no spectrum. An index of version 1.0 has none.
@@ -263,9 +277,7 @@ impl Run<'_> {
             .collect();
         for (texture, edited) in batch.drain(..).zip(edited) {
             match edited? {
-                None => {
-                    kept.insert(texture.entry.name, texture.name);
-                }
+                None => kept[texture.index] = Kept::new(&texture.entry, texture.name),
                 Some(edited) => {
                     let added = self.writer.add_prepared(&texture.name, edited);
                     added.map_err(at_place(path.display()))?;
@@ -310,8 +322,23 @@ impl Run<'_> {
     }
 }
 
+/// Whether a texture is taken over as it is, and under which name.
+enum Kept {
+    No,
+    Same,
+    As(String),
+}
+
+impl Kept {
+    fn new(entry: &Entry, name: String) -> Self {
+        if entry.name == name { Self::Same } else { Self::As(name) }
+    }
+}
+
 /// A texture of a library that may get other metadata.
 struct Pending {
+    /// Its number in the library.
+    index: usize,
     entry: Entry,
     /// Its new name.
     name: String,

@@ -80,6 +80,10 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
 /// treat two names with the same form as the same file. Two names have the same form exactly if
 /// they are a canonical caseless match (The Unicode Standard, definition D145).
 fn of_one_file(name: &str) -> String {
+    // Of ASCII, the folding is lower case, and nothing decomposes.
+    if name.is_ascii() {
+        return name.to_ascii_lowercase();
+    }
     let decomposed = DecomposingNormalizer::new_nfd();
     let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
     decomposed.normalize(&folded(&decomposed.normalize(name))).into_owned()

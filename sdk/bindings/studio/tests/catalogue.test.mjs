@@ -105,7 +105,7 @@ test("what others wrote is shown as text, and only addresses of the web are link
   assert.deepEqual(links, ["https://textures.example/"]);
   assert.match(await page.locator(".catalogue-head").textContent(), /CC0-1.0 6, CC-BY-4.0 4/);
   await page.getByRole("link", { name: /^oak/ }).click();
-  await page.getByText("By </script><b>Ben").waitFor();
+  await page.getByText("By </script><b>Ben.").waitFor();
   assert.equal(await page.locator("b").count(), 0);
   await closed(page);
 });

@@ -30,7 +30,7 @@ export function Build({ report: { program, planned, missing, leftOut, findings }
           {missing > leftOut.length && <p class="soft small">and {missing - leftOut.length} more, which build-report.json lists</p>}
         </section>
       )}
-      <section aria-labelledby="findings-title">
+      <section>
         <h2 id="findings-title">Findings of recordings</h2>
         {findings.length === 0 && <p>None.</p>}
         {findings.length > 0 && (

@@ -49,7 +49,7 @@ function Conditions({ texture, model }: Opened) {
   const at = texture.manifest.representations.find((one) => one.model === model)?.at ?? [];
   const rows = at.slice(0, 100);
   return (
-    <section aria-labelledby="conditions-title">
+    <section>
       <h2 id="conditions-title">Recorded conditions</h2>
       <div class="scrolls" tabIndex={0} role="region" aria-labelledby="conditions-title">
         <table class="table">

@@ -137,6 +137,7 @@ test("a texture has an address of its own, plays, and is saved as its file", asy
   await page.evaluate(() => (location.hash = "#nowhere"));
   await page.getByText(/no texture .*nowhere/).waitFor();
   await page.getByRole("link", { name: "All textures" }).click();
+  await page.locator(".card").first().waitFor();
   assert.equal((await cards(page)).length, 10);
   await closed(page);
 });
@@ -149,6 +150,7 @@ test("what a build left out is on a page of its own", async () => {
   assert.equal(await page.locator(".card").count(), 0);
   await assertAccessible(page, "build");
   await page.getByRole("link", { name: "Textures" }).click();
+  await page.locator(".card").first().waitFor();
   assert.equal((await cards(page)).length, 10);
   await closed(page);
 });

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::Quantity;
-use crate::library::coarse_spectrum::CoarseSpectrum;
+use crate::library::coarse_spectrum::{CoarseSpectrum, POINTS};
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::query::Query;
@@ -103,7 +103,7 @@ impl<S: LibrarySource> Library<S> {
                 found.push(Duplicate { of: other.name.clone(), entry, distance_db: 0.0 });
                 continue;
             }
-            all.push(Candidate { entry, quantity, spectrum, mean_db: spectrum.mean_db() });
+            all.push(Candidate::new(entry, quantity, spectrum));
         }
         found.extend(near(&all, within_db));
         found.sort_by(|a, b| a.entry.name.cmp(&b.entry.name));
@@ -119,7 +119,28 @@ struct Candidate {
     entry: Entry,
     quantity: Quantity,
     spectrum: CoarseSpectrum,
+    /// The mean level, and how much higher the lower half of the levels is than the upper half,
+    /// decibels. Both differ by at most the distance of two spectra.
     mean_db: f64,
+    tilt_db: f64,
+}
+
+impl Candidate {
+    fn new(entry: Entry, quantity: Quantity, spectrum: CoarseSpectrum) -> Self {
+        let levels = spectrum.levels_db();
+        let sum = |levels: &[f64]| levels.iter().sum::<f64>() / POINTS as f64;
+        let (low, high) = levels.split_at(POINTS / 2);
+        let (low, high) = (sum(low), sum(high));
+        Self { entry, quantity, spectrum, mean_db: low + high, tilt_db: low - high }
+    }
+
+    /// Returns the distance to another spectrum, if it is at most `within_db`.
+    fn distance_within(&self, other: &Self, within_db: f64) -> Option<f64> {
+        if (self.tilt_db - other.tilt_db).abs() > within_db {
+            return None;
+        }
+        Some(self.spectrum.distance_db(&other.spectrum)).filter(|distance| *distance <= within_db)
+    }
 }
 
 /// Returns the candidates that are near one before them. The candidates are sorted by name.
@@ -138,11 +159,11 @@ fn near(all: &[Candidate], within_db: f64) -> Vec<Duplicate> {
             if a.quantity != b.quantity || b.mean_db - a.mean_db > within_db {
                 break;
             }
-            let distance_db = a.spectrum.distance_db(&b.spectrum);
+            let Some(distance_db) = a.distance_within(b, within_db) else { continue };
             let (first, later) = (*one.min(other), *one.max(other));
             let is_nearer =
                 nearest[later].is_none_or(|(known, db)| (distance_db, first) < (db, known));
-            if distance_db <= within_db && is_nearer {
+            if is_nearer {
                 nearest[later] = Some((first, distance_db));
             }
         }

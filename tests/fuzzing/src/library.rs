@@ -21,7 +21,8 @@ const LIMITS: Limits = Limits {
 const READ: usize = 32;
 const HEADER_BYTES: usize = 128;
 
-/// The input's first byte determines how the rest is used.
+/// The input's first byte determines how the rest is used; its third bit, whether what is built around
+/// the rest is of version 1.1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Around {
     /// The rest is a file.
@@ -38,12 +39,12 @@ pub(crate) enum Around {
 impl Around {
     const ALL: [Self; 4] = [Self::File, Self::Header, Self::Leaf, Self::Root];
 
-    /// Returns the input that uses `rest` in this way.
-    pub(crate) fn input(self, rest: &[u8]) -> Vec<u8> {
-        [&[self as u8], rest].concat()
+    /// Returns the input that uses `rest` in this way, in a library of version 1.`minor`.
+    pub(crate) fn input(self, rest: &[u8], minor: u8) -> Vec<u8> {
+        [&[self as u8 + minor * Self::ALL.len() as u8], rest].concat()
     }
 
-    fn file(self, rest: &[u8]) -> Option<Vec<u8>> {
+    fn file(self, rest: &[u8], minor: u8) -> Option<Vec<u8>> {
         Some(match self {
             Self::File => rest.to_vec(),
             Self::Header => with_checksum(rest),
@@ -67,24 +68,38 @@ impl Around {
                     root.truncate(7);
                     root[6] &= 0x7f;
                 }
-                file(&page(&root), &leaf, shared, payload, (entries, 1))
+                if minor > 0 {
+                    // Metadata, and no spectra.
+                    root.extend(b"\x02{}\0");
+                    root.extend(blake3::hash(&[]).as_bytes());
+                }
+                file(&page(&root), &leaf, shared, payload, (entries, 1), minor)
             }
             Self::Root => {
-                let leaves = leaves();
-                file(&page(rest), &leaves.concat(), &[], &[], (2, 2))
+                let leaves = leaves(minor);
+                let shared = spectra().concat();
+                let shared = if minor > 0 { &shared[..] } else { &[] };
+                file(&page(rest), &leaves.concat(), shared, &[], (2, 2), minor)
             }
         })
     }
 }
 
+/// Pages with a spectrum for each of the [`leaves`].
+pub(crate) fn spectra() -> [Vec<u8>; 2] {
+    [1.5f32, -40.0].map(|largest| page(&[&[1, 1][..], &largest.to_le_bytes(), &[255; 48]].concat()))
+}
+
 /// Two leaf pages with an empty texture each, `a` and `b`.
-pub(crate) fn leaves() -> [Vec<u8>; 2] {
+pub(crate) fn leaves(minor: u8) -> [Vec<u8>; 2] {
+    // No rights, no licence, no author, a quantity, no felt difference.
+    let newer: &[u8] = if minor > 0 { &[0; 5] } else { &[] };
     // One entry, no words, its name, no tags, no models, no conditions, a law of zeros, no bytes,
     // no objects, a hash.
     [b'a', b'b'].map(|name| {
         let before = [1, 0, 0, 1, name, 0, 0, 0];
         let law = [0; 1 + 3 * 8];
-        page(&[&before[..], &law, &[0, 0, 0], &[7; 32]].concat())
+        page(&[&before[..], &law, &[0, 0, 0], &[7; 32], newer].concat())
     })
 }
 
@@ -95,7 +110,8 @@ pub fn library(input: &[u8]) -> bool {
         return false;
     };
     let around = Around::ALL[usize::from(*kind) % Around::ALL.len()];
-    let Some(file) = around.file(rest) else {
+    let minor = *kind / Around::ALL.len() as u8 % 2;
+    let Some(file) = around.file(rest, minor) else {
         return false;
     };
     let report = validate_source(file.as_slice(), &LIMITS).expect("memory can be read");
@@ -136,6 +152,11 @@ fn read(library: &Library<&[u8]>, report: &Report) -> bool {
         }
         before = entry.name;
         count += 1;
+    }
+    let described = library.described().map(|described| described.map(|(entry, _)| entry.name));
+    match described.collect::<Result<Vec<_>, _>>() {
+        Ok(names) => assert_eq!(names.len(), count),
+        Err(error) => refused(error),
     }
     if report.valid {
         assert_eq!(count as u64, library.len());
@@ -191,9 +212,16 @@ pub(crate) fn page(contents: &[u8]) -> Vec<u8> {
 
 /// Makes a file from these parts with a valid header. `counts` are the numbers of entries and
 /// leaves.
-fn file(root: &[u8], leaves: &[u8], shared: &[u8], payload: &[u8], counts: (u64, u32)) -> Vec<u8> {
+fn file(
+    root: &[u8],
+    leaves: &[u8],
+    shared: &[u8],
+    payload: &[u8],
+    counts: (u64, u32),
+    minor: u8,
+) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
-    file.extend([1, 0, 0, 0, 0, 0, 0, 0]);
+    file.extend([1, 0, minor, 0, 0, 0, 0, 0]);
     let mut at = HEADER_BYTES as u64;
     for part in [root, leaves, shared, payload] {
         file.extend(at.to_le_bytes());

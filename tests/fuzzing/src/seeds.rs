@@ -234,13 +234,25 @@ fn libraries() -> Vec<Seed> {
     }
     writer.finish().expect("it can be written");
     let file = std::fs::read(path).expect("it was written");
-    let pages = library::leaves().map(|leaf| leaf.len() as u8);
-    let root = [&b"\x04Seed\x02\x00\x00\x00\x01b"[..], &pages].concat();
+    let root = |minor| {
+        let pages = library::leaves(minor).map(|leaf| leaf.len() as u8);
+        [&b"\x04Seed\x02\x00\x00\x00\x01b"[..], &pages].concat()
+    };
+    let spectra = library::spectra();
+    let described = [
+        &root(1)[..],
+        &[27],
+        br#"{"date":"2026-11-29","x":1}"#,
+        &spectra.each_ref().map(|page| page.len() as u8),
+        blake3::hash(&spectra.concat()).as_bytes(),
+    ]
+    .concat();
     [
-        ("file", Around::File.input(&file)),
-        ("header", Around::Header.input(&file)),
-        ("leaf", Around::Leaf.input(&leaf(vinyl))),
-        ("root", Around::Root.input(&root)),
+        ("file", Around::File.input(&file, 0)),
+        ("header", Around::Header.input(&file, 0)),
+        ("leaf", Around::Leaf.input(&leaf(vinyl), 0)),
+        ("root", Around::Root.input(&root(0), 0)),
+        ("described", Around::Root.input(&described, 1)),
     ]
     .map(|(name, input)| ("library", name.to_owned(), input))
     .to_vec()

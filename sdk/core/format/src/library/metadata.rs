@@ -142,7 +142,8 @@ fn is_date(text: &str) -> bool {
         return false;
     };
     let year: u32 = year;
-    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let is_multiple = |of| year.is_multiple_of(of);
+    let is_leap = is_multiple(4) && (!is_multiple(100) || is_multiple(400));
     let days = match month {
         1u32 | 3 | 5 | 7 | 8 | 10 | 12 => 31,
         4 | 6 | 9 | 11 => 30,

@@ -27,7 +27,8 @@ pub(crate) struct Root {
     /// Offsets of the leaves in the file, followed by the end of the last leaf.
     offsets: Vec<u64>,
     /// What the library says about itself.
-    pub metadata: LibraryMetadata,
+    // In a box, so that an open library is not much larger than one that is being opened.
+    pub metadata: Box<LibraryMetadata>,
     /// Offsets of the spectra of each leaf in the file, followed by the end of the last ones.
     spectra: Vec<u64>,
     /// BLAKE3 of all spectra.
@@ -59,12 +60,12 @@ impl Root {
             name,
             separators,
             offsets,
-            metadata: LibraryMetadata::default(),
+            metadata: Box::default(),
             spectra: vec![header.shared.end; count + 1],
             spectra_blake3: NO_SPECTRA,
         };
         if header.minor > 0 {
-            root.metadata = metadata(&mut cursor)?;
+            root.metadata = Box::new(metadata(&mut cursor)?);
             root.spectra = spectra(&mut cursor, count, header, leaf_bytes)?;
             root.spectra_blake3 = cursor.array().map_err(malformed)?;
         }

@@ -2,7 +2,7 @@ use std::fmt::{Display, Formatter};
 use std::path::{MAIN_SEPARATOR, PathBuf};
 
 use clap::Args;
-use htex_base::files::{AtFile, read_regular};
+use htex_base::files::{AtFile, OwnFolder, read_regular};
 use htex_base::finding::plain;
 use htex_exchange::{
     ActuatorPlay, Coding, ExchangeError, ExportedFile, Format, Loss, MOST_BYTES, Path, Profile,
@@ -15,7 +15,7 @@ use crate::commands::spectrum::ChoiceArgs;
 use crate::explicit_args::ExplicitArgs;
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{note, show, write_file};
+use crate::output::{OutputFile, note, show};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::scene_sound::{Scene, is_scene};
@@ -120,28 +120,28 @@ impl Export {
         let ends_as_folder = self.output.to_string_lossy().ends_with(['/', MAIN_SEPARATOR]);
         if let ([asset], false) = (&assets[..], ends_as_folder || self.output.is_dir()) {
             self.asset.clone_from(asset);
-            return show(&self.write(format)?, self.json);
+            let output = self.output.clone();
+            return show(&self.write(format, OutputFile::Named(&output))?, self.json);
         }
-        let folder = self.output.clone();
+        let folder = OwnFolder::new(&self.output);
         let mut reports = Vec::new();
         for asset in assets {
             let own = asset.file_name().map(PathBuf::from).unwrap_or_default();
             let name = located::texture_name(&asset).unwrap_or(own);
             let extension = format.extensions.first().copied().unwrap_or(format.name);
-            self.output = folder.join(name.with_extension(extension));
-            let parent = self.output.parent().unwrap_or(&folder);
-            std::fs::create_dir_all(parent).writing(parent)?;
+            let inside = name.with_extension(extension);
+            self.output = folder.path().join(&inside);
             self.asset = asset;
-            reports.push(self.write(format)?);
+            reports.push(self.write(format, OutputFile::Inside(&folder, &inside))?);
         }
         show(&ExportReports(reports), self.json)
     }
 
-    /// Exports one texture or scene to the output.
-    fn write(&self, format: &'static Format) -> Result<ExportReport> {
+    /// Exports one texture or scene to a file, which is `self.output`.
+    fn write(&self, format: &'static Format, to: OutputFile<'_>) -> Result<ExportReport> {
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
-        write_file(&self.output, &exported.bytes)?;
+        to.write(&exported.bytes)?;
         if !self.json {
             note(&exported.notes);
         }

@@ -1,19 +1,18 @@
 use std::fmt::{Display, Formatter};
 use std::fs::File;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use clap::Args;
-use htex_base::files::{AtFile, FileInProgress, read_regular};
+use htex_base::files::{AtFile, OwnFolder, read_regular};
 use htex_build::{Report, Status};
 use htex_format::library::Library;
 use serde::Serialize;
 
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{show, shown, write_file};
+use crate::output::{OutputFile, show, shown};
 use crate::shared;
 
 /// The page that is filled in, in the folder of the studio.
@@ -135,12 +134,11 @@ impl Catalogue {
             None => (encoded(&file_name(&self.library)), None),
         };
         let is_embedded = origin.is_none() && bytes <= MOST_EMBEDDED;
-        let textures = match is_embedded {
-            true => {
-                let bytes = read_regular(&self.library, MOST_EMBEDDED).reading(&self.library)?;
-                STANDARD.encode(bytes)
-            }
-            false => String::new(),
+        let textures = if is_embedded {
+            let bytes = read_regular(&self.library, MOST_EMBEDDED).reading(&self.library)?;
+            STANDARD.encode(bytes)
+        } else {
+            String::new()
         };
         let title = if opened.name().is_empty() { "Textures" } else { opened.name() };
         let options = serde_json::to_string(&Options { library: &address, report })
@@ -152,15 +150,15 @@ impl Catalogue {
                     shown(&page)
                 ))
             })?;
-        std::fs::create_dir_all(&self.output).writing(&self.output)?;
+        let folder = OwnFolder::new(&self.output);
         // The page last, so that it never names a library that is not there.
         if origin.is_none() {
-            copy(&self.library, &self.output.join(file_name(&self.library)))?;
+            copy(&self.library, &folder, Path::new(&file_name(&self.library)))?;
         }
-        let index = self.output.join("index.html");
-        write_file(&index, filled.as_bytes())?;
+        let page = OutputFile::Inside(&folder, Path::new("index.html"));
+        page.write(filled.as_bytes())?;
         let written = Written {
-            page: index.display().to_string(),
+            page: page.path().display().to_string(),
             library: title.to_owned(),
             textures: opened.len(),
             embedded: is_embedded,
@@ -196,18 +194,16 @@ fn filled(
     Some(page)
 }
 
-/// Copies a file. The copy is written beside its target and renamed.
-fn copy(from: &Path, to: &Path) -> Result<()> {
-    if let (Ok(a), Ok(b)) = (from.canonicalize(), to.canonicalize())
+/// Copies a file into a folder, unless it is there.
+fn copy(from: &Path, folder: &OwnFolder, name: &Path) -> Result<()> {
+    let to = OutputFile::Inside(folder, name);
+    if let (Ok(a), Ok(b)) = (from.canonicalize(), to.path().canonicalize())
         && a == b
     {
         return Ok(());
     }
     let mut source = File::open(from).reading(from)?;
-    let mut target = FileInProgress::create(to).writing(to)?;
-    std::io::copy(&mut source, target.file()).writing(to)?;
-    target.file().flush().writing(to)?;
-    Ok(target.keep().writing(to)?)
+    Ok(to.replace(|file| std::io::copy(&mut source, file).map(|_| ()))?)
 }
 
 fn file_name(library: &Path) -> String {

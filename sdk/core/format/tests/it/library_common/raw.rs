@@ -19,9 +19,9 @@ pub struct Raw {
     pub index_blake3: Option<[u8; 32]>,
     /// Metadata as JSON.
     pub metadata: Vec<u8>,
-    /// Spectra of the leaves' entries: the largest level and the others. Leaves beyond the last one
+    /// Spectra of the leaves' entries. Leaves beyond the last one
     /// have no spectra.
-    pub spectra: Vec<Vec<Option<(f32, [u8; 48])>>>,
+    pub spectra: Vec<Vec<Option<RawSpectrum>>>,
     pub spectra_blake3: Option<[u8; 32]>,
     /// Changes to unpacked pages: 0 is the root, 1 the first leaf, 101 the spectra of the first leaf.
     pub pages: Vec<(usize, Change)>,
@@ -32,6 +32,9 @@ pub struct Raw {
     /// A change to the header before its checksum is computed.
     pub header: Option<Change>,
 }
+
+/// A spectrum: the largest level, and the others.
+pub type RawSpectrum = (f32, [u8; 48]);
 
 /// An entry of a leaf.
 #[derive(Clone)]

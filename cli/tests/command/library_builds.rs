@@ -666,12 +666,12 @@ fn textures_without_recordings_stay_or_are_missed() {
     fs::rename(place.path("rec/vinyl_2.csv"), place.path("archived too.csv")).unwrap();
 
     let first = "[library]\nname = \"surfaces\"";
-    place.write("library.toml", &RECIPE.replace(first, &format!("{first}\nmax_removed = 1")));
+    place.write("library.toml", RECIPE.replace(first, &format!("{first}\nmax_removed = 1")));
     let refused = place.run(&["build", "library.toml", "-o", "dist"]);
     assert!(refused.code() == 1 && refused.error().contains("would lose 2 textures (vinyl/…)"));
     assert!(library("vinyl/1").unwrap() == before);
 
-    place.write("library.toml", &RECIPE.replace(first, &format!("{first}\nmissing = \"keep\"")));
+    place.write("library.toml", RECIPE.replace(first, &format!("{first}\nmissing = \"keep\"")));
     for _ in 0..2 {
         let kept = build(&place, "dist", &["--no-removals"]);
         assert_eq!(kept["kept"], serde_json::json!(["vinyl/1", "vinyl/2"]), "{kept}");
@@ -739,7 +739,7 @@ fn a_recipe_describes_its_library() {
     let first = "[library]\nname = \"surfaces\"";
     let described =
         format!("{first}\nversion = \"1.2\"\nauthors = [\"Ana\"]\ndate = \"2026-11-30\"");
-    place.write("library.toml", &RECIPE.replace(first, &described));
+    place.write("library.toml", RECIPE.replace(first, &described));
     build(&place, "dist", &[]);
     let info = place.json(&["lib", "info", "dist/surfaces.htexlib", "--json"]);
     assert_eq!([&info["version"], &info["authors"][0]], [&Value::from("1.2"), &"Ana".into()]);
@@ -767,7 +767,7 @@ fn merged_builds_are_the_build_of_all() {
         place.write("library.toml", &recipe);
         build(&place, part, &[]);
     }
-    place.write("library.toml", &RECIPE.replace("rec/*.csv", "rec/fine*.csv"));
+    place.write("library.toml", RECIPE.replace("rec/*.csv", "rec/fine*.csv"));
     build(&place, "fine", &[]);
     let merge = ["lib", "merge", "vinyl", "sandpaper", "fine", "-o", "dist", "--name", "surfaces"];
     let merged = place.json(&[&merge[..], &["--json"]].concat());

@@ -22,8 +22,8 @@ pub(crate) struct Verify {
 
     /// BLAKE3 that the library must have, as `htex lib info` prints it. It comes from a place that
     /// you trust, and shows that the library is the one that was published
-    #[arg(long, value_name = "HEX", value_parser = blake3)]
-    blake3: Option<[u8; 32]>,
+    #[arg(long, value_name = "HEX")]
+    blake3: Option<String>,
 
     /// Print findings for continuous integration
     #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "json")]
@@ -36,7 +36,7 @@ pub(crate) struct Verify {
 
 impl Verify {
     pub(crate) fn run(self) -> Result {
-        if let Some(expected) = self.blake3 {
+        if let Some(expected) = self.blake3.as_deref().map(blake3).transpose()? {
             let [library] = &self.libraries[..] else {
                 return Err(Failure::usage("--blake3 is of one library; name one"));
             };
@@ -55,10 +55,12 @@ impl Verify {
     }
 }
 
-fn blake3(text: &str) -> Result<[u8; 32], String> {
+fn blake3(text: &str) -> Result<[u8; 32]> {
     let hash = blake3::Hash::from_hex(text.trim());
-    hash.map(|hash| *hash.as_bytes())
-        .map_err(|_| "give the 64 hexadecimal digits that `htex lib info` prints".to_owned())
+    hash.map(|hash| *hash.as_bytes()).map_err(|_| {
+        let problem = "give the 64 hexadecimal digits that `htex lib info` prints";
+        Failure::Usage(format!("--blake3 {text}: {problem}"))
+    })
 }
 
 /// Validates a library.

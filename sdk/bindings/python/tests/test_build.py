@@ -125,7 +125,7 @@ def test_a_worker_that_is_killed_and_one_that_hangs_change_nothing(
 
         told: list[tuple[int, int]] = []
         report = htex.dask.build(
-            recipe, client, recipe.parent / "dask", shard_bytes=1, done=disturb, progress=lambda ended, all: told.append((ended, all))
+            recipe, client, recipe.parent / "dask", shard_bytes=1, done=disturb, progress=lambda ended, of: told.append((ended, of))
         )
     assert told[0][0] == 0 and told[-1] == (told[0][1], told[0][1]) and sorted(told) == told
     assert report["library"]["textures"] == 12

@@ -64,6 +64,18 @@ fn text_of_files_is_printed_as_text() {
         vec!["fit", &csv, "--name", EVIL, "--author", EVIL, "-o", "z.htex", "--model", "sslope"],
         vec!["process", "evil.csv"],
         vec!["explain", EVIL],
+        vec!["validate", "evil.htex", &name, "--format", "github"],
+        vec!["validate", "evil.htex", &name, "--format", "junit"],
+        vec!["lib", "pack", "evil.htexlib", "evil.htex", "--unlicensed"],
+        vec!["lib", "edit", "evil.htexlib", "--rename", "evil=good", "--unlicensed"],
+        vec!["lib", "info", "evil.htexlib"],
+        vec!["lib", "ls", "evil.htexlib"],
+        vec!["lib", "find", "evil.htexlib", "--like", "good"],
+        vec!["lib", "find", "evil.htexlib", "--like", EVIL],
+        vec!["lib", "find", "evil.htexlib", "--author", EVIL],
+        vec!["lib", "edit", "evil.htexlib", "--describe", EVIL],
+        vec!["lib", "merge", "evil.htexlib", EVIL, "-o", "merged.htexlib"],
+        vec!["lib", "verify", "evil.htexlib", "--blake3", EVIL],
     ];
     for arguments in runs {
         let done = place.command(&arguments).output().unwrap();

@@ -3,7 +3,7 @@ use std::fmt::{Display, Formatter};
 
 use clap::Args;
 use htex_base::finding::plain;
-use htex_format::library::{Conditions, Interval, LibraryMetadata};
+use htex_format::library::LibrarySummary;
 use serde::Serialize;
 
 use super::LibraryArg;
@@ -30,80 +30,16 @@ pub(crate) struct Info {
 #[derive(Serialize)]
 struct LibraryInfo {
     file: String,
-    name: String,
     #[serde(flatten)]
-    metadata: LibraryMetadata,
-    /// Version of the library's format.
-    format: String,
-    /// Hash of the index, which names the library.
-    blake3: String,
-    textures: u64,
-    bytes: u64,
-    /// Bytes of all textures together, if they were files.
-    texture_bytes: u64,
-    #[serde(flatten)]
-    conditions: Conditions,
-    #[serde(flatten)]
-    counts: Counts,
-}
-
-/// Number of textures of each licence, quantity, model, contact and tag.
-#[derive(Default, Serialize)]
-struct Counts {
-    licenses: BTreeMap<String, u64>,
-    quantities: BTreeMap<String, u64>,
-    models: BTreeMap<String, u64>,
-    contacts: BTreeMap<String, u64>,
-    tags: BTreeMap<String, u64>,
+    summary: LibrarySummary,
 }
 
 impl Info {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
         let _waiting = self.library.waiting()?;
-        let library = self.library.open()?;
-        let index = library.index();
-        let mut info = LibraryInfo {
-            file: file.display().to_string(),
-            name: library.name().to_owned(),
-            metadata: library.metadata().clone(),
-            format: format!("1.{}", index.minor_version()),
-            blake3: blake3::Hash::from_bytes(index.blake3()).to_string(),
-            textures: library.len(),
-            bytes: index.file_bytes(),
-            texture_bytes: 0,
-            conditions: Conditions::default(),
-            counts: Counts::default(),
-        };
-        for entry in library.entries() {
-            let entry = entry.map_err(for_file(&file))?;
-            info.texture_bytes += entry.bytes;
-            info.conditions.speed_mm_s =
-                widest(info.conditions.speed_mm_s, entry.conditions.speed_mm_s);
-            info.conditions.force_n = widest(info.conditions.force_n, entry.conditions.force_n);
-            let counts = &mut info.counts;
-            if let Some(quantity) = entry.quantity {
-                let license = entry.license.unwrap_or_else(|| "none".to_owned());
-                *counts.licenses.entry(license).or_default() += 1;
-                *counts.quantities.entry(quantity.name().to_owned()).or_default() += 1;
-            }
-            *counts.contacts.entry(entry.contact.name().to_owned()).or_default() += 1;
-            for (texts, all) in [(entry.models, &mut counts.models), (entry.tags, &mut counts.tags)]
-            {
-                for text in texts {
-                    *all.entry(text).or_default() += 1;
-                }
-            }
-        }
-        show(&info, self.json)
-    }
-}
-
-/// Returns the smallest interval that contains both.
-fn widest(a: Option<Interval>, b: Option<Interval>) -> Option<Interval> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(Interval { min: a.min.min(b.min), max: a.max.max(b.max) }),
-        (a, b) => a.or(b),
+        let summary = self.library.open()?.summary().map_err(for_file(&file))?;
+        show(&LibraryInfo { file: file.display().to_string(), summary }, self.json)
     }
 }
 
@@ -112,13 +48,14 @@ const MOST_WORDS: usize = 12;
 
 impl Display for LibraryInfo {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self { metadata, counts, .. } = self;
+        let summary = &self.summary;
+        let metadata = &summary.metadata;
         let version = metadata.version.as_deref().map(|version| format!(" {}", plain(version)));
         let date = metadata.date.as_deref().map(|date| format!(", {date}"));
         writeln!(
             f,
             "{}{}{}",
-            plain(&self.name),
+            plain(&summary.name),
             version.unwrap_or_default(),
             date.unwrap_or_default()
         )?;
@@ -138,17 +75,17 @@ impl Display for LibraryInfo {
             "textures",
             &format!(
                 "{}, {} bytes; {} bytes in the library",
-                self.textures, self.texture_bytes, self.bytes
+                summary.textures, summary.texture_bytes, summary.bytes
             ),
         )?;
-        line("licences", &counted(&counts.licenses, str::to_owned))?;
-        line("quantities", &counted(&counts.quantities, str::to_owned))?;
-        line("models", &counted(&counts.models, |id| short_name(id).to_owned()))?;
-        line("contacts", &counted(&counts.contacts, str::to_owned))?;
-        line("tags", &counted(&counts.tags, str::to_owned))?;
-        line("speeds", &range(self.conditions.speed_mm_s, "mm/s"))?;
-        line("forces", &range(self.conditions.force_n, "N"))?;
-        line("BLAKE3", &self.blake3)
+        line("licences", &counted(&summary.licenses, str::to_owned))?;
+        line("quantities", &counted(&summary.quantities, str::to_owned))?;
+        line("models", &counted(&summary.models, |id| short_name(id).to_owned()))?;
+        line("contacts", &counted(&summary.contacts, str::to_owned))?;
+        line("tags", &counted(&summary.tags, str::to_owned))?;
+        line("speeds", &range(summary.conditions.speed_mm_s, "mm/s"))?;
+        line("forces", &range(summary.conditions.force_n, "N"))?;
+        line("BLAKE3", &summary.blake3)
     }
 }
 

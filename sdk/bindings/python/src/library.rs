@@ -125,6 +125,15 @@ impl Library {
         py.import("json")?.call_method1("loads", (json,))
     }
 
+    /// Returns what `htex lib info --json` prints: what the library says about itself, and the number
+    /// of textures of each licence, quantity, model, contact and tag. Reads the index.
+    fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let summary = py.detach(|| self.library.summary()).map_err(raised)?;
+        // Texts and numbers always become JSON.
+        let json = serde_json::to_string(&summary).unwrap_or_default();
+        py.import("json")?.call_method1("loads", (json,))
+    }
+
     /// BLAKE3 hash of the index, hexadecimal. It names the library.
     #[getter]
     fn blake3(&self) -> String {

@@ -135,6 +135,7 @@ def test_a_library_says_what_it_is(place: pathlib.Path, library: htex.Library, t
     assert described.metadata == {"version": "1.2", "authors": ["Ana", "Ben"]} and library.metadata == {}
     said = json.loads(command("lib", "info", str(path), "--json", cwd=place).stdout)
     assert (said["version"], said["blake3"]) == ("1.2", described.blake3)
+    assert described.info() == {key: value for key, value in said.items() if key != "file"}
     htex.Library.merge([path], tmp_path / "merged.htexlib", describe={"date": "2026-11-30"})
     assert htex.Library(tmp_path / "merged.htexlib").metadata == {"date": "2026-11-30"}
     with pytest.raises(htex.OptionError, match="date is no date"):

@@ -84,6 +84,7 @@ mod source;
 mod spectra;
 #[cfg(feature = "write")]
 mod spool;
+mod summary;
 mod validate;
 mod wire;
 #[cfg(feature = "write")]
@@ -115,6 +116,7 @@ pub use reader::{Described, Entries, Library};
 pub use rules::{RULES, findings_page};
 pub use search::{Duplicate, Similar};
 pub use source::{LibrarySource, LocalFile};
+pub use summary::LibrarySummary;
 pub use validate::{validate, validate_source};
 #[cfg(feature = "write")]
 pub use writer::{MemoryWriter, Writer};

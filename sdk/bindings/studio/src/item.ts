@@ -35,8 +35,8 @@ export interface Item extends Facts {
   readonly free: () => void;
 }
 
-async function openWithModel(bytes: Uint8Array): Promise<Opened> {
-  const texture = await open(bytes);
+/** A texture with the model that plays. A texture that cannot be played is freed. */
+export function withModel(texture: Texture): Opened {
   try {
     const voice = texture.voice();
     const { model } = voice;
@@ -47,6 +47,8 @@ async function openWithModel(bytes: Uint8Array): Promise<Opened> {
     throw error;
   }
 }
+
+const openWithModel = async (bytes: Uint8Array) => withModel(await open(bytes));
 
 /** The name and the tags of a texture. One that cannot be played is refused. */
 export async function factsOf(bytes: Uint8Array) {

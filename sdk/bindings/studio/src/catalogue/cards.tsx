@@ -4,13 +4,13 @@ import { batch, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Library, LibraryEntry } from "htex";
 
+import { withModel, type Opened } from "../item.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Name } from "../parts/name.tsx";
 import { NoPicture, Picture } from "../parts/picture.tsx";
 import { whenFree } from "../slices.ts";
 import { ALL, type Filters } from "./filters.ts";
 import { addressOf, entries, filters, found, isWhole, knowsFelt, licenses, quantities, tags } from "./state.ts";
-import { opened, type Opened } from "./textures.ts";
 
 /** Cards that are there at once, and cards that are added where the end comes near. */
 const [FIRST, MORE] = [48, 24];
@@ -32,7 +32,7 @@ function Card({ library, entry }: { library: Library; entry: LibraryEntry }) {
     let isGone = false;
     let own: Opened | null = null;
     const open = async () => {
-      own = await opened(library, entry.name);
+      own = withModel(await library.texture(entry.name));
       if (isGone) own.texture.free();
       else setTexture(own);
     };

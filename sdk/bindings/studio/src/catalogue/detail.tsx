@@ -4,6 +4,7 @@ import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Library, Texture } from "htex";
 
 import { near, recordedRange } from "../conditions.ts";
+import { withModel, type Opened } from "../item.ts";
 import { fineSpectrum } from "../look/spectrum-line.ts";
 import { pilotForce, pilotSpeed, rest } from "../motion.ts";
 import { Icon } from "../parts/icons.tsx";
@@ -11,7 +12,6 @@ import { Name } from "../parts/name.tsx";
 import { Controls, Pad } from "../player/parts.tsx";
 import { failure, startSound } from "../player/sound.ts";
 import { SpectrumChart } from "./spectrum-chart.tsx";
-import { opened, type Opened } from "./textures.ts";
 
 /** What is opened at the moment, with its bytes. */
 interface Shown extends Opened {
@@ -173,7 +173,7 @@ export function Detail({ library, name }: { library: Library; name: string }) {
     setProblem("");
     const open = async () => {
       const bytes = (await library.bytes(name)) as Uint8Array<ArrayBuffer>;
-      const own = await opened(library, name);
+      const own = withModel(await library.texture(name));
       if (isGone) return own.texture.free();
       setSliders(own);
       setShown({ ...own, name, bytes });

@@ -132,7 +132,10 @@ fn metadata(cursor: &mut Cursor<'_>) -> Result<LibraryMetadata, Fault> {
         return Err(malformed(cursor.malformed("the metadata exceeds 8192 bytes")));
     }
     let json = cursor.read_bytes(length).map_err(malformed)?;
-    let read = serde_json::from_slice::<LibraryMetadata>(json).map_err(|error| error.to_string());
+    // By the reader of manifests, so that modules for the web have only one.
+    let read = crate::parse_json(json).map_err(|error| error.to_string()).and_then(|value| {
+        serde_json::from_value::<LibraryMetadata>(value).map_err(|error| error.to_string())
+    });
     read.and_then(|metadata| metadata.check().map(|()| metadata)).map_err(|problem| {
         let message = format!("the library's metadata: {problem}; pack the library again");
         Fault::new(rule::LIBRARY_METADATA_INVALID, PLACE, message)

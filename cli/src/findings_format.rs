@@ -104,12 +104,12 @@ mod tests {
         let github = formatted(FindingsFormat::Github, "htex", std::slice::from_ref(&report));
         assert_eq!(
             github,
-            "::error file=a%2Cb%3A\"c\".htex,title=LIBRARY_UNRECOGNISED::100 %25 <b>\\u{a}::error::x (at /a)\n"
+            "::error file=a%2Cb%3A\"c\".htex,title=LIBRARY_UNRECOGNISED::100 %25 <b>\\n::error::x (at /a)\n"
         );
         let junit = formatted(FindingsFormat::Junit, "htex", &[report]);
         assert!(
             junit.contains("failures=\"1\"") && junit.contains("name=\"a,b:&quot;c&quot;.htex\"")
         );
-        assert!(junit.contains("100 % &lt;b&gt;\n::error::x"), "{junit}");
+        assert!(junit.contains("100 % &lt;b&gt;\\n::error::x"), "{junit}");
     }
 }

@@ -63,8 +63,8 @@ fn junit(suite: &str, reports: &[FileReport]) -> String {
         let file = escaped(&report.file);
         let line = |severity: fn(&Severity) -> bool| {
             let found = report.findings.iter().filter(|finding| severity(&finding.severity));
-            let lines = found.map(|f| format!("{} {}: {}", f.code, f.pointer, f.message));
-            escaped(&lines.collect::<Vec<_>>().join("\n"))
+            let lines = found.map(|f| escaped(&format!("{} {}: {}", f.code, f.pointer, f.message)));
+            lines.collect::<Vec<_>>().join("\n")
         };
         let (errors, others) = (line(|s| *s == Severity::Error), line(|s| *s != Severity::Error));
         let _ = writeln!(xml, "  <testcase name=\"{file}\" classname=\"{}\">", escaped(suite));
@@ -79,10 +79,9 @@ fn junit(suite: &str, reports: &[FileReport]) -> String {
     xml + "</testsuite>\n"
 }
 
+/// Escapes a text of one line.
 fn escaped(text: &str) -> String {
-    let lines: Vec<_> = text.split('\n').map(plain).collect();
-    lines
-        .join("\n")
+    plain(text)
         .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

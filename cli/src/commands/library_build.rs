@@ -95,7 +95,7 @@ pub(crate) struct Build {
     wasm_limit: Vec<WasmLimit>,
 
     /// Print findings and textures that were left out, for continuous integration
-    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with = "json")]
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["json", "dry_run"])]
     format: Option<FindingsFormat>,
 
     /// Print JSON instead of text

@@ -219,6 +219,15 @@ fn a_catalogue_is_a_filled_page_beside_the_library() {
     let copied = std::fs::read(place.path("site/odd #1.htexlib")).unwrap();
     assert!(copied == std::fs::read(place.path("odd #1.htexlib")).unwrap());
 
+    // A name that is a place of the page stays a name.
+    let pack = ["lib", "pack", "place.htexlib", "textures", "--name", "__TEXTURES__"];
+    assert_eq!(place.run(&pack).code(), 0);
+    let fill = ["lib", "catalogue", "place.htexlib", "--folder", "page", "-o", "placed"];
+    assert_eq!(place.run(&fill).code(), 0);
+    let page = std::fs::read_to_string(place.path("placed/index.html")).unwrap();
+    assert!(page.contains("<title>__TEXTURES__</title>"), "{page}");
+    assert!(page.contains("<script id=\"textures\">iUhUTA0KGgoB"), "{page}");
+
     let url = ["--url", "https://textures.example:8443/a/b.htexlib?v=1"];
     assert_eq!(catalogue(&[&["-o", "remote"], &url[..]].concat()).code(), 0);
     let page = std::fs::read_to_string(place.path("remote/index.html")).unwrap();

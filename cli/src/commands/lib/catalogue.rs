@@ -181,12 +181,13 @@ fn filled(
     let connects = format!("connect-src 'self' {}", origin.unwrap_or_default());
     let mut page = template.to_owned();
     let own = "connect-src 'self'";
-    // A place is in the page before any text that the page is filled with.
+    // From the last place to the first one, so that no text that is filled in stands before a place
+    // that it might name.
     for (place, text) in [
-        ("__TITLE__", &title[..]),
-        (own, connects.trim_end()),
+        ("__OPTIONS__", &options[..]),
         ("__TEXTURES__", textures),
-        ("__OPTIONS__", &options),
+        ("__TITLE__", &title),
+        (own, connects.trim_end()),
     ] {
         let at = page.find(place)?;
         page.replace_range(at..at + place.len(), text);

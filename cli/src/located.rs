@@ -518,7 +518,7 @@ fn create(path: &Path) -> Result<File> {
     Ok(options.write(true).create_new(true).open(path).writing(path)?)
 }
 
-/// Uploads the outputs of a command that has succeeded. Keeps the local copies if an upload fails.
+/// Uploads the outputs of a command that has succeeded, files and folders. Keeps the local copies if an upload fails.
 pub(crate) fn upload() -> Result<()> {
     let outputs = outputs();
     if outputs.is_empty() {
@@ -526,8 +526,29 @@ pub(crate) fn upload() -> Result<()> {
     }
     let storage = Storage::from_environment()?;
     for (location, local) in outputs {
-        let written = storage.write_file(&location, &local);
-        written.map_err(|error| kept(&local, error))?;
+        if local.is_dir() {
+            upload_folder(&storage, &location, &local)?;
+        } else {
+            storage.write_file(&location, &local).map_err(|error| kept(&local, error))?;
+        }
+    }
+    Ok(())
+}
+
+/// Uploads each file of a folder, in the order of their names. Files that stand in the store under
+/// other names stay.
+fn upload_folder(storage: &Storage, location: &Location, folder: &Path) -> Result<()> {
+    let mut entries: Vec<_> =
+        std::fs::read_dir(folder).reading(folder)?.collect::<Result<_, _>>().reading(folder)?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let (location, local) =
+            (location.inside(&entry.file_name().to_string_lossy()), entry.path());
+        if local.is_dir() {
+            upload_folder(storage, &location, &local)?;
+        } else {
+            storage.write_file(&location, &local).map_err(|error| kept(folder, error))?;
+        }
     }
     Ok(())
 }

@@ -148,6 +148,25 @@ fn a_texture_of_a_library_elsewhere_is_read_alone() {
         .failed(1, &["similar names are cloth"]);
 }
 
+/// The folder of an export goes elsewhere, with each file at its place.
+#[test]
+fn several_textures_are_exported_to_a_folder_elsewhere() {
+    let bench = Bench::new();
+    let (place, server) = (&bench.place, &bench.server);
+    let library = "../spec/library-conformance/valid_four.htexlib";
+    let library = std::fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(library));
+    place.write("all.htexlib", library.unwrap());
+    let export = |to| ["export", "all.htexlib#wood/*", "--to", "ahap", "-o", to];
+    for to in ["here", "s3://surfaces/there"] {
+        let done = bench.run(&export(to));
+        assert_eq!(done.code(), 0, "{}", done.error());
+    }
+    for name in ["wood/birch.ahap", "wood/oak.ahap", "wood/Ölweide.ahap"] {
+        let here = std::fs::read(place.path("here").join(name)).unwrap();
+        assert_eq!(server.get(&format!("surfaces/there/{name}")).unwrap(), here);
+    }
+}
+
 /// A scene is here, and what is rendered of it goes elsewhere.
 #[test]
 fn a_scene_is_rendered_to_a_file_elsewhere() {

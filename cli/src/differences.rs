@@ -57,11 +57,12 @@ fn spectra(model: &str, at: &DifferenceAt) -> String {
         }
     }
     let felt = &at.difference.felt.error;
-    let side = if felt.below_difference_threshold { "below" } else { "above" };
     _ = write!(
         line,
-        ", felt {:.2} dB RMS, {:.2} dB at most ({side} the difference threshold)",
-        felt.error_rms_db, felt.largest_error_db
+        ", felt {:.2} dB RMS, {:.2} dB at most ({})",
+        felt.error_rms_db,
+        felt.largest_error_db,
+        felt.verdict()
     );
     line
 }

@@ -164,6 +164,7 @@ pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) 
     let share = |(short_name, share): (String, FeltShare)| Share {
         short_name,
         textures: share.textures,
+        below_detection_threshold: share.below_detection_threshold,
         below_difference_threshold: share.below_difference_threshold,
         below_if_sensitive: share.below_if_sensitive,
         within_repeatability: share.within_repeatability,

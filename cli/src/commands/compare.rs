@@ -257,11 +257,11 @@ impl Display for OtherRecording {
         let felt = &self.difference.felt.error;
         writeln!(
             f,
-            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold",
+            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {}",
             felt.error_rms_db,
             felt.largest_error_db,
             felt.total_error_db,
-            if felt.below_difference_threshold { "below" } else { "above" }
+            felt.verdict()
         )?;
         match self.repeatability_rms_db {
             Some(db) => writeln!(f, "{name} repeats within {db:.2} dB"),

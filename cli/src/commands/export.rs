@@ -240,14 +240,14 @@ fn limited(played: &ActuatorPlay) -> String {
 /// Describes in words what the exported file loses.
 fn lost(lost: &Loss) -> String {
     let felt = &lost.difference.felt.error;
-    let threshold = if felt.below_difference_threshold { "below" } else { "above" };
     let nine_bands = lost.difference.quality.get(Measure::NineBand);
     format!(
-        "\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({threshold} the difference threshold), \
+        "\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({}), \
          nine bands {:.1} dB, level {:+.1} dB",
         felt.error_rms_db,
         felt.largest_error_db,
         felt.total_error_db,
+        felt.verdict(),
         nine_bands.unwrap_or_default(),
         lost.level_db,
     )

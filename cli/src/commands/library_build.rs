@@ -391,6 +391,15 @@ impl Display for Summary<'_> {
                 share.below_if_sensitive,
                 share.within_repeatability
             )?;
+            if share.below_detection_threshold > 0 {
+                writeln!(
+                    f,
+                    "{}: {} of {} textures cannot be felt at all",
+                    short_name(model),
+                    share.below_detection_threshold,
+                    share.textures
+                )?;
+            }
         }
         f.write_str(&removed(self.removed))?;
         f.write_str(&named("kept", self.kept))?;

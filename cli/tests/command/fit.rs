@@ -196,7 +196,7 @@ fn knobs_change_the_fit() {
         ("mfcc", &["mfcc.inverse=nnls", "mfcc.inverse=interpolate", "mfcc.bands=20"]),
         ("speak", &["speak.phase=zero", "speak.frequency=bin"]),
         ("sbeta", &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=magnitude", "sbeta.bins=0"]),
-        ("sslope", &["sslope.rounding_db_per_decade=5"]),
+        ("sslope", &["sslope.rounding_db_per_decade=20"]),
         ("bands", &["bands.bands=19", "bands.step_db=0.5", "bands.layout=within"]),
     ] {
         let default = parameters(model, &[]);
@@ -204,6 +204,36 @@ fn knobs_change_the_fit() {
             assert_ne!(parameters(model, &[option]), default, "{option}");
         }
     }
+}
+
+/// `--as paper` is all of the paper's choices, of which each can be replaced.
+#[test]
+fn one_flag_makes_every_choice_of_the_paper() {
+    let place = Place::new();
+    let csv = place.recording("sandpaper");
+    let fit = |flags: &str| {
+        let all = format!("fit {csv} -o a.htex --json {flags}");
+        place.json(&words(&all))["manifest"].clone()
+    };
+    let paper = fit("--as paper");
+    let explicit = fit("--model ar,mfcc,speak,sbeta,sslope --segments sweeps \
+         --averaging magnitude --level fitted --option speak.frequency=bin \
+         --option speak.phase=zero --option sbeta.error=magnitude --option sbeta.lower_bound=1 \
+         --option sbeta.bins=0 --option sbeta.refit=never \
+         --option sslope.rounding_db_per_decade=20");
+    assert_eq!(paper["representations"], explicit["representations"]);
+    let recorded = |manifest: &serde_json::Value| {
+        let mut options = manifest["provenance"]["options"].as_object().unwrap().clone();
+        let name = options.remove("as");
+        (options, name)
+    };
+    assert_eq!(recorded(&paper).0, recorded(&explicit).0);
+    assert_eq!(recorded(&paper).1.unwrap(), "paper");
+    let other = fit("--as paper --model sslope --option sslope.rounding_db_per_decade=1");
+    let options = recorded(&other).0;
+    assert_eq!(options["sslope.rounding_db_per_decade"], "1");
+    assert_eq!(options["averaging"], "magnitude");
+    assert!(!options.contains_key("sbeta.refit"));
 }
 
 #[test]

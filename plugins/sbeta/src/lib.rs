@@ -87,10 +87,17 @@ impl ShapedModel for SpectralBeta {
             20,
             "Number of bins, evenly spaced in log frequency, to which the density is fitted in addition to the \
              peaks. The first is the lowest bin; the largest bin is always added. 0: only the peaks, as in the \
-             paper. If a fit to the peaks is higher than twice the largest bin, a second fit also uses as many bins \
-             as `points` says. The fit that is nearer in decibels is kept.",
+             paper.",
         )
         .sweep_alone(&[0.0, 5.0, 10.0, 20.0, 40.0]),
+        StaticOption::choice(
+            "refit",
+            &["if_high", "never"],
+            "Whether a fit to only the peaks (`bins` 0) is repeated if its maximum is higher than twice the largest \
+             bin. `if_high`: the second fit also uses as many bins as `points` says, and the fit that is nearer in \
+             decibels is kept. `never`: the first fit is kept, as in the paper.",
+        )
+        .sweep_alone(&[1.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {

@@ -86,7 +86,7 @@ impl ShapedModel for SpectralSlope {
             "rounding_db_per_decade",
             "dB/decade",
             (1.0, 20.0),
-            20.0,
+            5.0,
             "Step to whose multiples the slopes are rounded. The paper uses 20.",
         )
         .sweep(&[20.0, 10.0, 5.0, 1.0]),

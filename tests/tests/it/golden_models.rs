@@ -1,14 +1,15 @@
 //! The models, called through the ABI, against numbers computed independently with SciPy.
 
 use crate::common;
+use htex_author::settings::Preset;
 use htex_host::{Band, Fit, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
-/// The paper's variant of sPeak.
-const PAPER_SPEAK: [(&str, &str); 2] = [("frequency", "bin"), ("phase", "zero")];
-/// The paper's variant of sBeta.
-const PAPER_SBETA: [(&str, &str); 3] =
-    [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
+/// The options with which `--as paper` fits a model.
+fn as_paper(model: &str) -> Vec<(&'static str, &'static str)> {
+    let own = Preset::Paper.options().iter().filter(|(owner, ..)| *owner == model);
+    own.map(|(_, option, value)| (*option, *value)).collect()
+}
 
 fn model(name: &str) -> LoadedModel {
     Registry::builtin().find(name).unwrap().clone()
@@ -51,7 +52,7 @@ fn speak_peaks_and_samples() {
     let speak = model("speak");
     for name in ["rippled", "few_peaks"] {
         let case = Golden::case("speak", name);
-        let fit = fit(&speak, &case.input("mag"), &PAPER_SPEAK);
+        let fit = fit(&speak, &case.input("mag"), &as_paper("speak"));
         let n = fit.parameters[0] as usize;
         case.hold("/f_hz", &fit.parameters[1..=n]);
         let amplitudes = &fit.parameters[n + 2..2 * n + 2];
@@ -100,7 +101,7 @@ fn sbeta_fits_of_ten_points() {
         let Some(spectrum) = spectrum_of_points(&case.input("f_hz"), &case.input("amp")) else {
             continue;
         };
-        let fit = fit(&sbeta, &spectrum, &PAPER_SBETA);
+        let fit = fit(&sbeta, &spectrum, &as_paper("sbeta"));
         case.hold("/alpha", &fit.parameters[..1]);
         case.hold("/beta", &fit.parameters[1..]);
         // The scale is part of the level: newtons at a frequency divided by the density there.
@@ -123,7 +124,7 @@ fn sslope_orders_by_each_way_of_measuring() {
         let curve =
             |f: &f64| 0.01 * if *f < peak { (f / peak).powf(up) } else { (f / peak).powf(-down) };
         let spectrum: Vec<f64> = grid.iter().map(curve).collect();
-        let fit = fit(&sslope, &spectrum, &[]);
+        let fit = fit(&sslope, &spectrum, &as_paper("sslope"));
         case.hold("/peak_hz", &fit.parameters[..1]);
         case.hold("/order_hp", &fit.parameters[1..2]);
         case.hold("/order_lp", &fit.parameters[2..]);
@@ -133,7 +134,8 @@ fn sslope_orders_by_each_way_of_measuring() {
     let case = Golden::case("sslope", "conventions_on_smooth");
     let ways = [("least-squares", "ols"), ("end-points", "endpoint"), ("anchored", "anchored")];
     for (way, key) in ways {
-        let fit = fit(&sslope, &smooth_spectrum(&grid), &[("slopes", way)]);
+        let options = [as_paper("sslope"), vec![("slopes", way)]].concat();
+        let fit = fit(&sslope, &smooth_spectrum(&grid), &options);
         case.hold(&format!("/{key}/peak_hz"), &fit.parameters[..1]);
         case.hold(&format!("/{key}/order_hp"), &fit.parameters[1..2]);
         case.hold(&format!("/{key}/order_lp"), &fit.parameters[2..]);

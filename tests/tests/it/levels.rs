@@ -220,7 +220,7 @@ fn sbeta() {
 
 #[test]
 fn sbeta_as_in_the_paper() {
-    let paper = [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
+    let paper = [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0"), ("refit", "never")];
     hold("sbeta", &paper);
 }
 

@@ -227,7 +227,6 @@ fn the_numbers_of_the_paper_are_the_options_defaults() {
         "speak.count=10",
         "speak.jnd=0.12",
         "sbeta.points=10",
-        "sslope.rounding_db_per_decade=20",
     ] {
         assert!(seen.contains(number), "the page does not give {number}");
     }

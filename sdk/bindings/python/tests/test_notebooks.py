@@ -30,6 +30,6 @@ def test_the_figures_are_made(tmp_path: pathlib.Path) -> None:
     pictures = [output.data["image/png"] for output in outputs if "image/png" in output.get("data", {})]
     for i, picture in enumerate(pictures):
         (tmp_path / f"figure-{i}.png").write_bytes(base64.b64decode(picture))
-    assert len(pictures) == 2
+    assert len(pictures) == 4
     text = "".join(output.get("text", "") for output in outputs)
     assert "each of the 270 errors agrees with the command" in text

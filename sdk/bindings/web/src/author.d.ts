@@ -170,6 +170,11 @@ export interface FitSettings extends ReadingSettings, Metadata {
   /** Options of each model, such as `{ ar: { order: 6 } }`. */
   options?: Record<string, Record<string, number | string>>;
   level?: "fitted" | "recording";
+  /**
+   * Several settings under one name. `"paper"`: the paper's five models, the middles of sweeps,
+   * averaged magnitudes, and the paper's choice for every option. Other settings take precedence.
+   */
+  preset?: "paper";
   /** Store the recorded spectra in the texture. */
   keep_reference?: boolean;
   /**
@@ -308,6 +313,7 @@ export interface FeltError {
   error_rms_db: number;
   largest_error_db: number;
   total_error_db: number;
+  below_detection_threshold: boolean;
   below_difference_threshold: boolean;
   below_if_sensitive: boolean;
   within_repeatability: boolean;
@@ -341,6 +347,8 @@ export interface Felt {
   error_rms_db: number;
   largest_error_db: number;
   total_error_db: number;
+  /** Whether the reference itself cannot be felt. Then the two answers below are false. */
+  below_detection_threshold: boolean;
   /**
    * Whether a typical person feels no difference (`below_difference_threshold`), and whether a
    * sensitive person does not (`below_if_sensitive`).

@@ -236,7 +236,10 @@ impl Law {
     /// not change.
     ///
     /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
-    /// contact. If this exponent is 1, so that the frequencies scale with the speed, the level gets
+    /// contact. But if this exponent was measured, a measured exponent of the level over the speed
+    /// is used as it is, because the assumption for it could be far from the truth.
+    ///
+    /// If the frequency exponent is 1, so that the frequencies scale with the speed, the level gets
     /// the exponents of a relief. If this exponent is 0, the level gets the exponents of a surface
     /// whose frequencies do not change. Between 0 and 1, the exponents of the level are
     /// interpolated.
@@ -260,9 +263,18 @@ impl Law {
         let [b, c] = assumed_levels(frequency_speed.exponent, quantity, contact);
         assumed.level_speed = Exponent::assumed(b);
         assumed.level_force = Exponent::assumed(c);
+        let mut level_speed = anew(1, self.level_speed, assumed.level_speed);
+        if frequency_speed.source == ExponentSource::Measured
+            && let (ExponentSource::Measured, Some(own)) =
+                (level_speed.source, level_speed.estimate)
+        {
+            // What is assumed beside a measured exponent of frequencies depends on a measurement
+            // that may be wrong. The level's own measurement does not.
+            level_speed.exponent = own.clamp(0.0, assumed.level_speed.exponent.max(1.0));
+        }
         Self {
             frequency_speed,
-            level_speed: anew(1, self.level_speed, assumed.level_speed),
+            level_speed,
             level_force: anew(2, self.level_force, assumed.level_force),
         }
     }

@@ -42,7 +42,7 @@ pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<Condi
             let [speed_mm_s, force_n] = motion.map(|x| Some(four_digits(x)));
             let condition =
                 Condition { speed_mm_s, force_n, repeatability_rms_db: None, segments: Some(0) };
-            ConditionSpectrum { condition, spectrum }
+            ConditionSpectrum { condition, spectrum, block_power: None }
         })
     };
     neighbours(recorded).into_iter().flat_map(between).take(MOST).collect()

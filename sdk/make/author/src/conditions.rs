@@ -9,13 +9,16 @@ use crate::findings::{differing, level_of};
 use crate::law::law;
 use crate::spectrum::{Averaging, SegmentSpectra};
 use crate::take::{SegmentedTake, refuse, sentence};
-use crate::{AuthorError, Exploration, TextureSpectrum, between};
+use crate::{AuthorError, Exploration, TextureSpectrum, between, block_power};
 
 /// The spectrum of one condition.
 #[derive(Debug, Clone)]
 pub(crate) struct ConditionSpectrum {
     pub(crate) condition: Condition,
     pub(crate) spectrum: TextureSpectrum,
+    /// Power of each block of time on the spectrum's grid; `None` if there are fewer than four
+    /// blocks, or if the spectrum was not averaged from blocks.
+    pub(crate) block_power: Option<Vec<Vec<f64>>>,
 }
 
 impl ConditionSpectrum {
@@ -147,7 +150,8 @@ impl ConditionSpectra {
                 repeatability_rms_db: spectrum.repeatability_rms_db,
                 segments: None,
             };
-            all.push(ConditionSpectrum { condition, spectrum });
+            let block_power = block_power(&parts);
+            all.push(ConditionSpectrum { condition, spectrum, block_power });
         }
         let differ = |of: fn(&TextureSpectrum, &TextureSpectrum) -> bool| {
             all.windows(2).any(|pair| of(&pair[0].spectrum, &pair[1].spectrum))

@@ -41,9 +41,18 @@ pub struct Felt {
 }
 
 impl Felt {
-    /// Whether every difference is below the difference threshold of 1.584 dB.
+    /// Whether the reference itself cannot be felt: all its bands together are below the detection
+    /// threshold.
+    pub fn is_below_detection_threshold(&self) -> bool {
+        let energies = self.reference_db.iter().map(|db| libm::pow(10.0, 0.1 * db));
+        energies.sum::<f64>() < 1.0
+    }
+
+    /// Whether the reference can be felt and every difference from it is below the difference
+    /// threshold of 1.584 dB.
     pub fn is_below_difference_threshold(&self) -> bool {
-        self.largest_error_db < DIFFERENCE_THRESHOLD_DB
+        !self.is_below_detection_threshold()
+            && self.largest_error_db < DIFFERENCE_THRESHOLD_DB
             && self.total_error_db.abs() < DIFFERENCE_THRESHOLD_DB
     }
 }
@@ -59,6 +68,10 @@ pub struct FeltError {
     /// Difference of the total levels above the detection threshold, decibels. The total level is
     /// computed from the energy of all bands together.
     pub total_error_db: f64,
+    /// Whether the recorded texture itself cannot be felt: all bands together are below the
+    /// detection threshold. Then the two answers below are false.
+    #[serde(default)]
+    pub below_detection_threshold: bool,
     /// Whether the difference is too small to notice: in every band and in total, it is below the
     /// difference threshold.
     pub below_difference_threshold: bool,
@@ -81,11 +94,24 @@ impl FeltError {
             error_rms_db: felt.error_rms_db,
             largest_error_db: felt.largest_error_db,
             total_error_db: felt.total_error_db,
+            below_detection_threshold: felt.is_below_detection_threshold(),
             below_difference_threshold: felt.is_below_difference_threshold(),
             below_if_sensitive: by(&Listener::sensitive()).is_below_difference_threshold(),
             within_repeatability: nine_band_db
                 .zip(recorded.repeatability_rms_db)
                 .is_some_and(|(error, own)| error <= own),
+        }
+    }
+
+    /// Returns how the difference, or the texture itself, compares with the thresholds, as the end
+    /// of a sentence.
+    pub const fn verdict(&self) -> &'static str {
+        if self.below_detection_threshold {
+            "the texture itself cannot be felt"
+        } else if self.below_difference_threshold {
+            "below the difference threshold"
+        } else {
+            "above the difference threshold"
         }
     }
 
@@ -98,6 +124,8 @@ impl FeltError {
             error_rms_db: further(self.error_rms_db, other.error_rms_db),
             largest_error_db: further(self.largest_error_db, other.largest_error_db),
             total_error_db: further(self.total_error_db, other.total_error_db),
+            below_detection_threshold: self.below_detection_threshold
+                && other.below_detection_threshold,
             below_difference_threshold: self.below_difference_threshold
                 && other.below_difference_threshold,
             below_if_sensitive: self.below_if_sensitive && other.below_if_sensitive,
@@ -107,13 +135,16 @@ impl FeltError {
 }
 
 /// Number of textures for which a model's error cannot be felt, because the error is below a
-/// listener's difference threshold. A separate count, `within_repeatability`, is the number of
+/// listener's difference threshold, and number of textures that cannot be felt themselves. A separate count, `within_repeatability`, is the number of
 /// textures whose error is within the recording's own variation. This second count does not show
 /// what can be felt: it is higher if the recordings repeat less well.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
+    /// Textures that cannot be felt at all. The two counts below leave them out.
+    #[serde(default)]
+    pub below_detection_threshold: usize,
     /// Textures whose difference is below the difference threshold.
     pub below_difference_threshold: usize,
     /// Textures whose difference is below the difference threshold of a person with a sensitive
@@ -127,6 +158,7 @@ impl FeltShare {
     /// Adds a texture's result to the counts.
     pub fn count(&mut self, felt: &FeltError) {
         self.textures += 1;
+        self.below_detection_threshold += usize::from(felt.below_detection_threshold);
         self.below_difference_threshold += usize::from(felt.below_difference_threshold);
         self.below_if_sensitive += usize::from(felt.below_if_sensitive);
         self.within_repeatability += usize::from(felt.within_repeatability);
@@ -317,7 +349,10 @@ mod tests {
     fn only_what_is_felt_counts() {
         let below = compared(|_| 1e-9, |_| 1e-8, Quantity::LateralForce);
         assert_eq!((below.error_rms_db, below.total_error_db), (0.0, 0.0));
-        assert!(below.is_below_difference_threshold());
+        assert!(below.is_below_detection_threshold() && !below.is_below_difference_threshold());
+        let unchanged = compared(|_| 0.1, |_| 0.1, Quantity::LateralForce);
+        assert!(unchanged.is_below_difference_threshold());
+        assert!(!unchanged.is_below_detection_threshold());
         let above = compared(|_| 0.1, |_| 0.2, Quantity::LateralForce);
         assert!(above.error_db.iter().all(|e| (e - 6.0206).abs() < 1e-3), "{above:?}");
         assert!(!above.is_below_difference_threshold());

@@ -27,6 +27,7 @@ class FitSettings(TypedDict, total=False):
     """How models are fitted."""
 
     models: Annotated[str | Sequence[str] | None, "Models to fit, by short name or id, comma-separated. `all` selects the models that htex fits by default; some models are fitted only if you name them [default: all]"]
+    preset: Annotated[Literal["paper"] | None, "Several settings at once. `paper`: the paper's five models, sweeps, averaged magnitudes, and the paper's choice for every option (docs/paper.md). Other flags take precedence"]
     level: Annotated[Literal["fitted", "recording"] | None, "How strong a model plays. `recording`: as strong as the recording (its RMS in the frequency band). `fitted`: as strong as the model's own fit. Bands always plays at the level of its fit, because it stores energies [default: recording]"]
     keep_reference: Annotated[bool | None, "Keep the recorded spectra in the asset. Each condition takes 788 bytes before compression"]
 

@@ -10,7 +10,8 @@ import { presentWork } from "../reference.ts";
 import { fail } from "../state.ts";
 
 /** The sentence for what is felt. */
-export function words({ below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">, which = "it") {
+export function words({ below_detection_threshold, below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_detection_threshold" | "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">, which = "it") {
+  if (below_detection_threshold) return "The texture itself is too weak to be felt, so no difference from it can be judged.";
   if (below_if_sensitive) return "Even a sensitive finger feels no difference.";
   if (below_difference_threshold) return "A finger feels no difference. A sensitive finger may feel one.";
   const whole = Math.abs(total_error_db) < 0.05 ? "" : ` Altogether, ${which} is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;

@@ -106,7 +106,7 @@ impl GridSpectra {
                 segments: Some(spectrum.segments as u64),
                 ..condition(cell)
             };
-            all.push(ConditionSpectrum { condition, spectrum });
+            all.push(ConditionSpectrum { condition, spectrum, block_power: None });
         }
         if all.is_empty() {
             return Err(AuthorError::GridEmpty {

@@ -183,7 +183,7 @@ impl<'a> Search<'a> {
                 force_n: median(1).map(four_digits),
                 ..Condition::default()
             };
-            let one = vec![ConditionSpectrum { condition, spectrum }];
+            let one = vec![ConditionSpectrum { condition, spectrum, block_power: None }];
             let played = PlayedSpectra::new(one, self.kind.contact);
             errors.extend(played.iter().flat_map(|played| errors_db(played, held)));
         }
@@ -210,7 +210,11 @@ impl CellSpectra {
     fn conditions(&self, spectra: &[Option<TextureSpectrum>]) -> Vec<ConditionSpectrum> {
         let both = self.cells.iter().zip(spectra);
         let with = both.filter_map(|(cell, spectrum)| {
-            Some(ConditionSpectrum { condition: condition(cell), spectrum: spectrum.clone()? })
+            Some(ConditionSpectrum {
+                condition: condition(cell),
+                spectrum: spectrum.clone()?,
+                block_power: None,
+            })
         });
         with.collect()
     }

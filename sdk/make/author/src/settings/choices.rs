@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
+use super::Preset;
 use crate::{Averaging, Level, SegmentChoice};
 
 macro_rules! choices {
@@ -19,4 +20,4 @@ macro_rules! choices {
     )*};
 }
 
-choices!(Averaging, Level, SegmentChoice);
+choices!(Averaging, Level, Preset, SegmentChoice);

@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::setting::settings;
-use super::{OneOrMore, ReadingSettings, one_or_more};
-use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
+use super::{OneOrMore, Preset, ReadingSettings, one_or_more};
+use crate::{AssetRequest, AuthorError, Averaging, Grid, Level, ModelRequest, SegmentChoice};
 
 settings! {
     /// Settings for fitting models. A missing setting has its default.
@@ -48,6 +48,18 @@ settings! {
         )]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub options: BTreeMap<String, OptionSetting>,
+
+        /// Several settings under one name. `paper` fits the paper's five models with the paper's
+        /// choices. Other settings take precedence.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            value_name = "NAME",
+            display_order = 1,
+            help = "Several settings at once. `paper`: the paper's five models, sweeps, averaged \
+                    magnitudes, and the paper's choice for every option (docs/paper.md). Other \
+                    flags take precedence"
+        ))]
+        pub preset: Option<Preset> = "as",
 
         /// Where the level of the representations comes from.
         #[cfg_attr(feature = "clap", arg(
@@ -156,8 +168,10 @@ impl FitSettings {
     /// # Errors
     /// When a model or an option is unknown, or an option names a model that is not being fitted.
     pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, AuthorError> {
-        let models = named_models(registry, self.models.as_deref().unwrap_or_default())?;
-        let mut options = Vec::new();
+        let models = self.named_models(registry)?;
+        let preset = self.preset.map_or(&[][..], Preset::options).iter();
+        let mut options: Vec<(&str, &str, String)> =
+            preset.map(|(owner, option, value)| (*owner, *option, (*value).to_owned())).collect();
         for (name, value) in &self.options {
             // A model's id has dots of its own, so the option is what follows the last dot.
             let (owner, option) = name.rsplit_once('.').ok_or_else(|| {
@@ -171,6 +185,10 @@ impl FitSettings {
                     fitted: models.iter().map(|m| m.short_name().to_owned()).collect(),
                 });
             }
+            let is_same = |(known, name, _): &(&str, &str, String)| {
+                *name == option && models.iter().any(|m| is(m, known) && is(m, owner))
+            };
+            options.retain(|known| !is_same(known));
             options.push((owner, option, value.to_string()));
         }
         let request = |model: LoadedModel| {
@@ -180,6 +198,34 @@ impl FitSettings {
             Ok(ModelRequest::new(&model).with_options(options))
         };
         models.into_iter().map(request).collect()
+    }
+
+    /// Returns the models to fit: the named ones, or else the models of the preset.
+    fn named_models(&self, registry: &Registry) -> Result<Vec<LoadedModel>, HostError> {
+        let named = self.models.as_deref().unwrap_or_default();
+        match self.preset {
+            // The command's default is `all`, which means that no model was named.
+            Some(preset) if named.is_empty() || named == ["all"] => {
+                let names: Vec<String> =
+                    preset.models().iter().map(|name| (*name).to_owned()).collect();
+                named_models(registry, &names)
+            }
+            _ => named_models(registry, named),
+        }
+    }
+
+    /// Returns settings for reading, completed by the preset.
+    fn reading(&self, reading: &ReadingSettings) -> ReadingSettings {
+        let Some(preset) = self.preset else { return reading.clone() };
+        // The command fills in its own defaults, so a default cannot be told from what the user
+        // gave. Only other choices take precedence over the preset.
+        let segments = reading.segments.filter(|one| *one != SegmentChoice::default());
+        let averaging = reading.averaging.filter(|one| *one != Averaging::default());
+        ReadingSettings {
+            segments: segments.or(Some(preset.segments())),
+            averaging: averaging.or(Some(preset.averaging())),
+            ..reading.clone()
+        }
     }
 
     /// Returns the reasons why models that the user named could not be fitted. `skipped` lists all
@@ -209,19 +255,28 @@ impl FitSettings {
         name: &str,
         tool: &str,
     ) -> Result<AssetRequest, AuthorError> {
+        let reading = &self.reading(reading);
+        let models = self.models(registry)?;
+        let given = self.level.filter(|level| *level != Level::default());
+        let level = given.or_else(|| self.preset.map(Preset::level)).unwrap_or_default();
         let mut recorded = reading.recorded();
+        for (owner, option, value) in self.preset.map_or(&[][..], Preset::options) {
+            if models.iter().any(|request| is(&request.model, owner)) {
+                recorded.insert(format!("{owner}.{option}"), (*value).to_owned());
+            }
+        }
         let options = self.options.iter();
         recorded.extend(options.map(|(name, value)| (name.clone(), value.to_string())));
-        recorded.extend(self.recorded());
+        recorded.extend(FitSettings { level: Some(level), ..self.clone() }.recorded());
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
         // Only the models that come with this program: a plugin runs only where it is asked for.
         let builtin = registry.by_default().filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest {
             name: name.to_owned(),
-            models: self.models(registry)?,
+            models,
             spectrum: reading.spectrum_options()?,
-            level: self.level.unwrap_or_default(),
+            level,
             alternatives: builtin.cloned().collect(),
             strict: self.strict.unwrap_or_default(),
             grid: grid.transpose()?,

@@ -10,6 +10,7 @@ mod fit;
 mod law;
 mod metadata;
 mod one_or_more;
+mod preset;
 mod reading;
 mod setting;
 
@@ -17,4 +18,5 @@ pub use fit::{FitSettings, OptionSetting, named_models};
 pub use law::GivenLaw;
 pub use metadata::Metadata;
 pub use one_or_more::{OneOrMore, one_or_more};
+pub use preset::Preset;
 pub use reading::ReadingSettings;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use htex_format::{Contact, Quantity};
 
-use super::{GivenLaw, OptionSetting};
+use super::{GivenLaw, OptionSetting, Preset};
 use crate::{Averaging, Level, SegmentChoice};
 
 /// A setting, which may be missing.
@@ -97,6 +97,7 @@ recorded! {
     Averaging: |averaging| unless_default(averaging, averaging.name());
     Contact: |_contact| None;
     GivenLaw: |_law| None;
+    Preset: |preset| Some(preset.name().to_owned());
     Level: |level| unless_default(level, level.name());
 }
 

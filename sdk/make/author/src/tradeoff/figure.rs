@@ -26,10 +26,14 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
 /// floor. Both axes are logarithmic.
 pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
+    let window = Window::new(&shown, against);
+    let [low, high] = window.costs;
+    let [least, most] = window.errors;
+    let label = format!("{} / {}", against.error, against.error.unit());
     let mut plot = Plot::new(
         title,
-        against.cost.axis(),
-        Axis::log(&format!("{} / {}", against.error, against.error.unit())),
+        against.cost.axis().with_range(low, high),
+        Axis::log(&label).with_range(least, most),
     );
     // Narrow, so that text stays readable on a phone.
     (plot.width, plot.height) = (440.0, 380.0);
@@ -38,7 +42,7 @@ pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against:
     line.line_width_px = 2.0;
     line.hover = false;
     plot.series.push(line.colored("#b8b8b8"));
-    plot.series.extend(floor(&shown, against));
+    plot.series.extend(floor(&shown, against, window));
     let builtin = Registry::builtin_names();
     for model in models {
         let color = model_color(model, &builtin);
@@ -53,7 +57,9 @@ pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against:
         best_dots.notes = best.iter().map(|p| note(p)).collect();
         plot.series.push(best_dots);
     }
-    for point in shown.iter().filter(|p| p.is_baseline()) {
+    // Where the recording is too large to be shown, the floor stands for it.
+    let is_inside = |p: &&&Point| against.place(p).0 <= high;
+    for point in shown.iter().filter(|p| p.is_baseline()).filter(is_inside) {
         let quantised = point.model == QUANTISED;
         let name = match point.setting.as_str() {
             "default" => point.model.replace('-', " "),
@@ -70,16 +76,61 @@ pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against:
     plot
 }
 
+/// The costs and errors that a plot shows.
+#[derive(Clone, Copy)]
+struct Window {
+    costs: [f64; 2],
+    errors: [f64; 2],
+}
+
+impl Window {
+    /// Shows the front of all models and the floor. A model that is far worse than the front would
+    /// otherwise take most of the picture, and the size of the recording most of its width.
+    fn new(shown: &[&Point], against: Against) -> Self {
+        let models = || shown.iter().filter(|p| p.model != RECORDING);
+        let costs = models().map(|p| against.place(p).0).filter(|cost| cost.is_finite());
+        let [low, high] = ends(costs);
+        let front: Vec<&Point> = along_front(shown, against);
+        let errors = front.into_iter().chain(shown.iter().copied().filter(|p| p.is_baseline()));
+        let errors = errors.map(|p| against.place(p).1).filter(|error| *error > 0.0);
+        let [least, most] = ends(errors.filter(|error| error.is_finite()));
+        Self { costs: [low / MARGIN, high * MARGIN], errors: [least / MARGIN, most * MARGIN] }
+    }
+}
+
+/// Space between the outermost points and the edges of a plot, as a ratio.
+const MARGIN: f64 = 1.25;
+
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// Returns a sentence about models that lie entirely above the plot; `None` if there are none.
+pub(crate) fn above(points: &[&Point], models: &[String], against: Against) -> Option<String> {
+    let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
+    let [_, most] = Window::new(&shown, against).errors;
+    let outside = models.iter().filter_map(|model| {
+        let own = shown.iter().filter(|p| p.model == *model);
+        let errors = own.map(|p| against.place(p).1).filter(|error| error.is_finite());
+        let [least, _] = ends(errors);
+        let is_above = least > most && least.is_finite();
+        is_above.then(|| format!("{model} (from {})", against.error.amount(least)))
+    });
+    let outside: Vec<String> = outside.collect();
+    let name = against.cost.name();
+    (!outside.is_empty())
+        .then(|| format!("Above the picture against {name}: {}.", outside.join(", ")))
+}
+
 /// Returns a line at the difference between the recording's own halves, across all costs. Errors
 /// below this line do not distinguish models.
-fn floor(shown: &[&Point], against: Against) -> Option<Series> {
+fn floor(shown: &[&Point], against: Against, window: Window) -> Option<Series> {
     let recording = shown.iter().find(|p| p.model == RECORDING)?;
     let error = against.place(recording).1;
-    let costs = || shown.iter().map(|p| against.place(p).0);
-    let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
-    let mut line = Series::line("floor: a second recording", ends.map(|x| (x, error)).to_vec())
-        .colored(RECORDING_COLOR)
-        .behind();
+    let mut line =
+        Series::line("floor: a second recording", window.costs.map(|x| (x, error)).to_vec())
+            .colored(RECORDING_COLOR)
+            .behind();
     line.line = Line::Dashed;
     Some(line)
 }

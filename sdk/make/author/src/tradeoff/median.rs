@@ -54,6 +54,7 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         held_out_error_db: all_of(&|p| p.held_out_error_db),
         by_magnitude: measures(By::Magnitude),
         shares: Shares {
+            below_detection: mean(|p| p.shares.below_detection),
             below_threshold: mean(|p| p.shares.below_threshold),
             below_threshold_if_sensitive: mean(|p| p.shares.below_threshold_if_sensitive),
             within_repeatability: mean(|p| p.shares.within_repeatability),

@@ -22,7 +22,8 @@ const METHOD: &str = "times are medians of interleaved runs on one core, with wa
     against the held-out error or the error by magnitudes, settings that play at their defaults; on_time_front: \
     ns_per_sample against the held-out error or the error by samples, settings with blocks and output rate at their defaults; of times within \
     their spreads, the one with the least error. The recording's errors are the difference between its odd and even blocks. \
-    share_below_threshold: recordings whose difference by magnitudes is below the difference threshold in every band; \
+    share_not_felt: recordings that are below the detection threshold as a whole; share_below_threshold: other recordings whose difference by \
+    magnitudes is below the difference threshold in every band; \
     share_within_repeatability: recordings whose nine-band error is at or below their own repeatability, which says nothing about what is felt.";
 
 /// The machine on which a sweep ran.

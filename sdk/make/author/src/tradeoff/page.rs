@@ -5,8 +5,8 @@ use htex_format::{By, ErrorMeasure, Measure, MeasureKind};
 
 use crate::tradeoff::against::Cost;
 use crate::tradeoff::error_axis::ErrorAxis;
-use crate::tradeoff::figure::figure;
-use crate::tradeoff::knee::{Knee, along_front};
+use crate::tradeoff::figure::{above, figure};
+use crate::tradeoff::knee::{Knee, along_front, knee};
 use crate::tradeoff::point::{errors, others};
 use crate::tradeoff::{Point, QUANTISED, RECORDING, Tradeoff};
 
@@ -14,9 +14,12 @@ use crate::tradeoff::{Point, QUANTISED, RECORDING, Tradeoff};
 /// every recording.
 pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     let mut page = Page::new("Accuracy against bytes and time");
+    let summary = tradeoff.summary();
+    if let Some(answer) = answer(tradeoff, &summary) {
+        page.html(&paragraph(&answer));
+    }
     page.html(&paragraph(&made_of(tradeoff)));
     page.html(&paragraph(&reading(tradeoff)));
-    let summary = tradeoff.summary();
     let name = summary.first().map_or(String::new(), |p| p.recording.clone());
     section(&mut page, tradeoff, &name, &summary);
     page.heading("How it is played");
@@ -39,6 +42,33 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     page.html(&crate::report::code_block(command));
     page.html(&paragraph(&machine(tradeoff)));
     page.render()
+}
+
+/// Returns the answer in one sentence: the setting at the knee of the front against bytes, and what
+/// the smallest error costs.
+fn answer(tradeoff: &Tradeoff, summary: &[&Point]) -> Option<String> {
+    let against = tradeoff.against(Cost::Bytes);
+    let models = summary.iter().copied().filter(|p| p.model != RECORDING);
+    let shown: Vec<&Point> = models.filter(|p| Cost::Bytes.compares(p)).collect();
+    let front = along_front(&shown, against);
+    let places: Vec<(f64, f64)> = front.iter().map(|p| against.place(p)).collect();
+    let at = knee(&places)?;
+    let error = |i: usize| against.error.amount(places[i].1);
+    let last = front.len() - 1;
+    let first = format!(
+        "{} needs {} bytes and {:.1} ns a sample for an error of {}",
+        front[at].name(),
+        front[at].bytes,
+        front[at].ns_per_sample,
+        error(at)
+    );
+    Some(if at == last {
+        format!("{first}, and no setting has a smaller error.")
+    } else {
+        let best = front[last];
+        let (name, bytes) = (best.name(), best.bytes);
+        format!("{first}; the smallest error, {}, needs {bytes} bytes ({name}).", error(last))
+    })
 }
 
 fn reading(tradeoff: &Tradeoff) -> String {
@@ -66,7 +96,7 @@ fn reading(tradeoff: &Tradeoff) -> String {
          Errors below the dashed line do not distinguish models. The tables have the held-out error, and against \
          what was fitted to the nine-band error, third-octave error and log-spectral distance, and what is felt of the difference: forces become \
          displacements of the skin, of which what is above the detection threshold counts, in third octaves. Below threshold is the share of \
-         the recordings whose difference is below the difference threshold in every band; apart from that, repeats is the share whose \
+         the recordings that can be felt and whose difference is below the difference threshold in every band; apart from that, repeats is the share whose \
          nine-band error is at or below the recording's own repeatability, which says how well a recording repeats and not what is felt. Two \
          baselines are in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
          between its odd and even blocks."
@@ -110,6 +140,11 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
         figure(title, points, &tradeoff.models, tradeoff.against(cost)).to_svg()
     });
     page.html(&figures(&pictures));
+    let outside = [Cost::Bytes, Cost::Time]
+        .map(|cost| above(points, &tradeoff.models, tradeoff.against(cost)));
+    for sentence in outside.into_iter().flatten() {
+        page.html(&paragraph(&sentence));
+    }
     for (against, what) in [("bytes", "bytes"), ("time", "time")] {
         let own = |k: &&Knee| k.recording == name && k.against == against;
         let words = |k: &Knee| format!("{}: {}", k.of, k.words);

@@ -74,6 +74,9 @@ pub struct Point {
 /// recording is small. Each share is from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
+    /// Share of the recordings that cannot be felt at all. The two shares below leave them out.
+    #[serde(rename = "share_not_felt")]
+    pub below_detection: f64,
     /// Share of the recordings whose difference is below the difference threshold, in every third
     /// octave and over all third octaves together.
     #[serde(rename = "share_below_threshold")]
@@ -93,6 +96,7 @@ impl Shares {
     fn new(felt: &FeltError) -> Self {
         let share = |is: bool| f64::from(u8::from(is));
         Self {
+            below_detection: share(felt.below_detection_threshold),
             below_threshold: share(felt.below_difference_threshold),
             below_threshold_if_sensitive: share(felt.below_if_sensitive),
             within_repeatability: share(felt.within_repeatability),
@@ -100,8 +104,9 @@ impl Shares {
     }
 
     /// Returns the shares with their keys in JSON.
-    pub(crate) fn keyed(&self) -> [(&'static str, f64); 3] {
+    pub(crate) fn keyed(&self) -> [(&'static str, f64); 4] {
         [
+            ("share_not_felt", self.below_detection),
             ("share_below_threshold", self.below_threshold),
             ("share_below_threshold_if_sensitive", self.below_threshold_if_sensitive),
             ("share_within_repeatability", self.within_repeatability),

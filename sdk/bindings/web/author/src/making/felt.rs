@@ -24,6 +24,7 @@ struct FeltSummary {
     error_rms_db: f64,
     largest_error_db: f64,
     total_error_db: f64,
+    below_detection_threshold: bool,
     below_difference_threshold: bool,
     below_if_sensitive: bool,
 }
@@ -53,6 +54,7 @@ pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
 
 fn told(felt: Felt, if_sensitive: &Felt) -> FeltSummary {
     FeltSummary {
+        below_detection_threshold: felt.is_below_detection_threshold(),
         below_difference_threshold: felt.is_below_difference_threshold(),
         below_if_sensitive: if_sensitive.is_below_difference_threshold(),
         centre_hz: felt.centre_hz,

@@ -24,6 +24,8 @@ pub struct Share {
     /// The model's short name.
     pub short_name: String,
     pub textures: usize,
+    /// Textures that cannot be felt at all.
+    pub below_detection_threshold: usize,
     /// Textures whose difference is below the difference threshold, in every third octave and in
     /// total.
     pub below_difference_threshold: usize,

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{
-    AuthorError, ComparedModel, Difference, Exploration, TextureDifference, TextureSpectrum,
-    compare, segment_take,
+    AuthorError, ComparedModel, Difference, Exploration, FluctuationDifference, SECOND_TAKES_DB,
+    TextureDifference, TextureSpectrum, compare, fluctuation, segment_take,
 };
 use htex_base::finding::{Notice, plain};
+use htex_dsp::fluctuation::Fluctuation;
 use htex_format::Measure;
 use serde::Serialize;
 
@@ -32,6 +33,10 @@ use crate::recordings::RecordingArgs;
 /// strongest condition if the first is silent. The error `felt` counts only what a fingertip can
 /// feel: it compares, in third octaves, how far each spectrum is above the fingertip's detection
 /// threshold.
+///
+/// Two signals with equal spectra can still fluctuate differently. The command also compares how
+/// the power in third octaves rises and falls at 1 to 64 Hz (`fluct`), if the recordings last at
+/// least 3 s.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording ({}), or an asset to compare with another one", format_names()))]
@@ -94,7 +99,18 @@ struct OtherRecording {
     force_n: Option<f64>,
     #[serde(flatten)]
     difference: Difference,
+    /// How the second recording fluctuates, compared with the first one.
+    fluctuation: Option<FluctuationDifference>,
     repeatability_rms_db: Option<f64>,
+}
+
+/// What is compared of a recording.
+struct Recorded {
+    spectrum: TextureSpectrum,
+    /// `None` if the recording is too short to measure this.
+    fluctuation: Option<Fluctuation>,
+    motion: Exploration,
+    warnings: Vec<Notice>,
 }
 
 impl Compare {
@@ -105,26 +121,26 @@ impl Compare {
         if kind(&self.recording) == Kind::Asset {
             return self.assets();
         }
-        let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
+        let recorded = self.recorded(&self.recording)?;
         let mut comparison = Comparison {
             recording: self.recording.display().to_string(),
             asset: None,
             other: None,
-            speed_mm_s: found.speed_mm_s,
-            force_n: found.force_n,
+            speed_mm_s: recorded.motion.speed_mm_s,
+            force_n: recorded.motion.force_n,
             representations: Vec::new(),
-            repeatability_rms_db: spectrum.repeatability_rms_db,
-            warnings,
+            repeatability_rms_db: recorded.spectrum.repeatability_rms_db,
+            warnings: recorded.warnings.clone(),
         };
         match kind(&self.other) {
             Kind::Recording => {
-                let (other, warnings) = self.other_recording(&spectrum)?;
+                let (other, warnings) = self.other_recording(&recorded)?;
                 comparison.warnings.extend(warnings);
                 comparison.other = Some(other);
             }
             _ => {
                 comparison.asset = Some(self.other.display().to_string());
-                comparison.representations = self.representations(&spectrum, found)?;
+                comparison.representations = self.representations(&recorded)?;
             }
         }
         if !self.json {
@@ -159,13 +175,10 @@ impl Compare {
         show(&ComparedAssets { asset, other, difference }, self.json)
     }
 
-    fn representations(
-        &self,
-        spectrum: &TextureSpectrum,
-        found: Exploration,
-    ) -> Result<Vec<ComparedModel>> {
+    fn representations(&self, recorded: &Recorded) -> Result<Vec<ComparedModel>> {
         let asset = self.player.open(&self.other)?;
-        compare(&asset, spectrum, found).map_err(|error| match error {
+        let Recorded { spectrum, fluctuation, motion, .. } = recorded;
+        compare(&asset, spectrum, *motion, fluctuation.as_ref()).map_err(|error| match error {
             AuthorError::OtherQuantity { held, .. } => {
                 Failure::Usage(format!("{error}; give --quantity {held}"))
             }
@@ -175,8 +188,11 @@ impl Compare {
     }
 
     /// Reads the other recording in the same way as the first one, and compares the two.
-    fn other_recording(&self, spectrum: &TextureSpectrum) -> Result<(OtherRecording, Vec<Notice>)> {
-        let (other, found, warnings) = self.spectrum(&self.other)?;
+    fn other_recording(&self, first: &Recorded) -> Result<(OtherRecording, Vec<Notice>)> {
+        let spectrum = &first.spectrum;
+        let second = self.recorded(&self.other)?;
+        let (other, found) = (second.spectrum, second.motion);
+        let both = first.fluctuation.as_ref().zip(second.fluctuation.as_ref());
         let difference = Difference::between(spectrum, &other).ok_or_else(|| {
             Failure::Other(format!(
                 "{}: {} at {} to {} Hz, and {} is {} at {} to {} Hz; compare recordings of one quantity and rate",
@@ -195,21 +211,23 @@ impl Compare {
             speed_mm_s: found.speed_mm_s,
             force_n: found.force_n,
             difference,
+            fluctuation: both.map(|(a, b)| FluctuationDifference::new(a, b)),
             repeatability_rms_db: other.repeatability_rms_db,
         };
-        Ok((compared, warnings))
+        Ok((compared, second.warnings))
     }
 
-    fn spectrum(&self, recording: &Path) -> Result<(TextureSpectrum, Exploration, Vec<Notice>)> {
+    fn recorded(&self, recording: &Path) -> Result<Recorded> {
         let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = segment_take(&take, &options, self.reading.strict())?;
         note(&reading.notes);
-        Ok((
-            TextureSpectrum::average(&[reading.spectra], options.averaging)?,
-            reading.motion,
-            reading.warnings,
-        ))
+        Ok(Recorded {
+            spectrum: TextureSpectrum::average(&[reading.spectra], options.averaging)?,
+            fluctuation: fluctuation(&take.recording),
+            motion: reading.motion,
+            warnings: reading.warnings,
+        })
     }
 }
 
@@ -229,14 +247,24 @@ impl Display for Comparison {
 impl Comparison {
     fn table(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let columns = columns(Measure::ALL);
-        writeln!(f, "  model   {}", headings(&columns))?;
+        writeln!(f, "  model   {}  fluct/dB", headings(&columns))?;
         for r in &self.representations {
             let value = |column: Column| {
                 column.value(Some(&r.difference.quality), Some(&r.difference.felt.error))
             };
-            writeln!(f, "  {:8}{}", short_name(&r.model), cells(&columns, value))?;
+            let fluctuation = r.fluctuation.map(|f| format!("{:.2}", f.fluctuation_error_db));
+            let fluctuation = fluctuation.unwrap_or_else(|| "-".to_owned());
+            let (name, cells) = (short_name(&r.model), cells(&columns, value));
+            writeln!(f, "  {name:8}{cells}  {fluctuation:>8}")?;
         }
-        Ok(())
+        match self.representations.first().map(|first| first.fluctuation) {
+            Some(Some(first)) => {
+                let kurtosis = first.kurtosis[0];
+                writeln!(f, "kurtosis of the recording: {kurtosis:.2} (noise: 3)")
+            }
+            Some(None) => writeln!(f, "{TOO_SHORT}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -263,9 +291,26 @@ impl Display for OtherRecording {
             felt.total_error_db,
             felt.verdict()
         )?;
+        match self.fluctuation {
+            Some(fluctuation) => {
+                let [third_octaves, modulation] = SECOND_TAKES_DB;
+                let [first, second] = fluctuation.kurtosis;
+                writeln!(
+                    f,
+                    "fluctuation: {:.2} dB in the modulation spectrum, kurtosis {first:.2} and {second:.2}; \
+                     of second takes of one surface, 95 % differ by at most {modulation} dB, and by \
+                     {third_octaves} dB in third octaves",
+                    fluctuation.fluctuation_error_db
+                )?;
+            }
+            None => writeln!(f, "{TOO_SHORT}")?,
+        }
         match self.repeatability_rms_db {
             Some(db) => writeln!(f, "{name} repeats within {db:.2} dB"),
             None => Ok(()),
         }
     }
 }
+
+/// Why a fluctuation is missing.
+const TOO_SHORT: &str = "fluctuation: not measured; it needs a recording of at least 3 s";

@@ -30,6 +30,7 @@ pub mod exponential;
 pub mod fft;
 pub mod fidelity;
 pub mod fir;
+pub mod fluctuation;
 pub mod glide;
 pub mod grid;
 pub mod interpolated_peaks;

@@ -1,10 +1,12 @@
 //! Compares the spectrum of a recording with other spectra: those of an asset's representations, or
 //! of another recording.
 
+use htex_dsp::fluctuation::Fluctuation;
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Measure, Quality};
 use serde::Serialize;
 
+use crate::fluctuation::{FluctuationDifference, voice_fluctuation};
 use crate::measure::measure;
 use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt};
 
@@ -40,6 +42,9 @@ pub struct ComparedModel {
     pub model: String,
     #[serde(flatten)]
     pub difference: Difference,
+    /// How the model's voice fluctuates, compared with the recording. `None` if the recording is
+    /// too short to measure this.
+    pub fluctuation: Option<FluctuationDifference>,
 }
 
 impl Difference {
@@ -76,7 +81,8 @@ impl Difference {
 
 /// Compares each representation of an asset with a recording. If the recording's speed and force
 /// are known, the representations are compared at this speed and force. If not, they are compared
-/// at the asset's default condition.
+/// at the asset's default condition. `fluctuation` is the recording's fluctuation, if it could be
+/// measured.
 ///
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
@@ -84,6 +90,7 @@ pub fn compare(
     asset: &htex_play::Texture,
     reference: &TextureSpectrum,
     found: Exploration,
+    fluctuation: Option<&Fluctuation>,
 ) -> Result<Vec<ComparedModel>, AuthorError> {
     let (held, recorded) = (asset.quantity(), reference.quantity);
     if held != recorded {
@@ -99,7 +106,13 @@ pub fn compare(
         let model = playable.model()?;
         let of = reference.as_ref();
         let (magnitude, quality) = measure(&model, &parameters, level_rms, of)?;
+        let voice = match fluctuation {
+            Some(_) => voice_fluctuation(&model, &parameters, of)?,
+            None => None,
+        };
+        let pair = fluctuation.zip(voice.as_ref());
         Ok(ComparedModel {
+            fluctuation: pair.map(|(a, b)| FluctuationDifference::new(a, b)),
             model: representation.model.clone(),
             difference: Difference::new(reference, level_rms, &magnitude, quality),
         })

@@ -3,6 +3,7 @@
 
 mod common;
 mod felt;
+mod fluctuation;
 mod grid;
 mod law;
 mod read;

@@ -97,7 +97,7 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
         "\"fields\":[" SHAPE("alpha") "," SHAPE("beta") "],\"options\":["
         OPTION("points", "3", "64", "10") "," OPTION("jnd", "0", "1", "0.12") ","
         OPTION("lower_bound", "0", "1", "0.5") "," OPTION("error", "0", "1", "0") ","
-        OPTION("bins", "0", "64", "20") "]}";
+        OPTION("bins", "0", "64", "20") "," OPTION("refit", "0", "1", "0") "]}";
 #endif
 #if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_DESCRIPTOR_SWEEP \
     || defined FAULT_DESCRIPTOR_USUAL || defined FAULT_STORE

@@ -111,8 +111,8 @@ htex_base::finding::rule_table! {
         "Recordings at one speed and force are averaged, and the loudest decide the result. One of them has another gain, unit, speed or force, or a fault.",
         "Give each recording its own speed and force, correct the scale, or leave the recording out.";
     GRID_NOT_BETTER Warning ("grid"):
-        "One condition for all motions predicts what was left out as well as the grid of conditions does.",
-        "Each quarter of the recordings is left out in turn and predicted from the rest. A grid that is not nearer than the mean of \
+        "One condition for all motions predicts what was left out better than the grid of conditions does.",
+        "Each quarter of the recordings is left out in turn and predicted from the rest. A grid that is worse than the mean of \
          all its windows has too few windows for its conditions, or the texture changes more from stroke to stroke than with speed and force.",
         "Fit without a grid, record for longer, or choose fewer lines.";
     RECORDING_NOTED Info:

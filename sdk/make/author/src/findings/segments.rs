@@ -21,7 +21,7 @@ pub(super) fn definition() -> String {
     format!(
         "- `RECORDING_UNEVEN`: the level of a segment is the root of the sum of its squared magnitudes over the band's bins, of the segment less its mean times a periodic Hann window; segments above {LOUD} times the median \
          level are loud, and the finding points to the first sample of the first. The band is from 20 Hz to 1000 Hz, or to half the rate if that is less. There is no finding if they are more than one in {EXCEPTION} of all.\n\
-         - `GRID_NOT_BETTER`: the error of one condition for all motions in what was left out is at most that of the grid.\n"
+         - `GRID_NOT_BETTER`: in what was left out, the error of the grid is larger than the error of one condition for all motions, and the 95 % interval of the difference does not include 0. The difference is measured in each group of left-out windows; there are at least four.\n"
     )
 }
 

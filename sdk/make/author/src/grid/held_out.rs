@@ -92,19 +92,19 @@ pub(super) fn averaged(
 }
 
 /// Returns the differences between the played spectra and the spectra of left-out windows, in each
-/// third octave, decibels.
-pub(super) fn errors_db(played: &PlayedSpectra, held: &[HeldOutWindows]) -> Vec<f64> {
-    let mut errors = Vec::new();
-    for one in held {
+/// third octave, decibels: one list for each element of `held`.
+pub(super) fn errors_db(played: &PlayedSpectra, held: &[HeldOutWindows]) -> Vec<Vec<f64>> {
+    let errors = held.iter().map(|one| {
         let truth = levels_db(&one.spectrum, 1.0, 1.0);
         let played = played.third_octaves_db(one.motion);
-        errors.extend(played.iter().zip(&truth).map(|(played, truth)| played - truth));
-    }
-    errors.retain(|error| error.is_finite());
-    errors
+        let errors = played.iter().zip(&truth).map(|(played, truth)| played - truth);
+        errors.filter(|error| error.is_finite()).collect()
+    });
+    errors.collect()
 }
 
 /// Returns the RMS of errors in decibels; `None` if there are none.
-pub(super) fn rms_db(errors: &[f64]) -> Option<f64> {
-    (!errors.is_empty()).then(|| rms(errors))
+pub(super) fn rms_db(errors: &[Vec<f64>]) -> Option<f64> {
+    let all = errors.concat();
+    (!all.is_empty()).then(|| rms(&all))
 }

@@ -93,6 +93,7 @@ impl GridSpectra {
         let response = options.response.as_ref();
         let found = Search::new(takes, response, &windows, kind).best(grid)?;
         let mut report = GridReport::new(looked_at, &windows, &found);
+        let worse_db = found.worse_db;
         let SearchResult { gathered, left_out, .. } = found;
         let mut all = Vec::new();
         for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
@@ -116,7 +117,7 @@ impl GridSpectra {
             });
         }
         report.add_mesh(&all);
-        judge(&report, takes, all.len(), &mut recordings);
+        judge(&report, worse_db, takes, all.len(), &mut recordings);
         let law = law(&all, contact);
         Ok(Self {
             conditions: ConditionSpectra { all, contact, law, recordings },
@@ -126,9 +127,11 @@ impl GridSpectra {
     }
 }
 
-/// Adds a finding if a single condition predicts the left-out blocks as well as the grid does.
+/// Adds a finding if a single condition predicts the left-out blocks better than the grid does, and
+/// the 95 % interval of this difference does not include 0.
 fn judge(
     report: &GridReport,
+    worse_db: Option<[f64; 2]>,
     takes: &[Take],
     conditions: usize,
     recordings: &mut RecordingsReport,
@@ -137,16 +140,17 @@ fn judge(
     else {
         return;
     };
-    if one_db > grid_db {
+    let Some([worse_db, half_db]) = worse_db.filter(|[mean, half]| mean > half) else {
         return;
-    }
+    };
     let mut findings = Findings::default();
     findings.add(
         GRID_NOT_BETTER,
         "",
         format!(
             "one condition for all motions predicts blocks of time that were left out within {one_db:.2} dB (third octaves, \
-             RMS), the {conditions} conditions of the grid within {grid_db:.2} dB; fit without a grid, or record for longer"
+             RMS), the {conditions} conditions of the grid within {grid_db:.2} dB; the grid is worse by {worse_db:.2} ± {half_db:.2} dB; \
+             fit without a grid, or record for longer"
         ),
     );
     let names: Vec<&str> = takes.iter().map(|t| t.recording.source.as_str()).collect();

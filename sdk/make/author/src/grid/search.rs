@@ -1,5 +1,6 @@
 //! Choice of a grid's lines: the fewest lines that best predict the left-out blocks of time.
 
+use htex_dsp::bands::rms;
 use htex_format::Condition;
 
 use super::cells::{Cell, are_full, gather};
@@ -26,6 +27,8 @@ const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
 const COMPARED_RATIO: f64 = 1.19;
 /// A denser grid is chosen only if its error is smaller by this many decibels.
 const WORTH_DB: f64 = 0.02;
+/// Fewest groups of left-out windows in which a grid is compared with one condition.
+const FEWEST_GROUPS: usize = 4;
 
 /// The cells and their spectra for one choice of lines.
 pub(super) struct CellSpectra {
@@ -44,6 +47,9 @@ pub(super) struct SearchResult {
     pub(super) left_out_rms_db: Option<f64>,
     /// The same error when one condition serves all motions.
     pub(super) one_condition_rms_db: Option<f64>,
+    /// By how much the grid's error exceeds the error of one condition, and half the width of the
+    /// 95 % interval, decibels.
+    pub(super) worse_db: Option<[f64; 2]>,
     pub(super) left_out: Vec<LeftOutBlock>,
 }
 
@@ -82,10 +88,10 @@ impl<'a> Search<'a> {
         // The same windows for all candidates: with cells of their own, denser grids would be
         // compared with fewer and better placed windows.
         let compared = self.all_held_out(&cells)?;
-        let one_condition_rms_db = self.one_condition_db(&compared)?;
+        let one_condition = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
         let ratios = if is_chosen { &SPEED_RATIOS[..] } else { &[COMPARED_RATIO] };
-        let mut best: Option<(CellSpectra, f64)> = None;
+        let mut best: Option<(CellSpectra, Vec<Vec<f64>>, f64)> = None;
         for ratio in ratios {
             let lines = Lines::choose(grid, &self.motions, *ratio)?;
             let cells = gather(&lines, &self.motions, &all);
@@ -93,23 +99,25 @@ impl<'a> Search<'a> {
                 break;
             }
             let gathered = self.gathered(lines, cells)?;
-            let error_db = self.error_db(&gathered, &compared).unwrap_or(f64::INFINITY);
-            let least = best.as_ref().map(|(_, least)| least - WORTH_DB);
+            let errors = self.errors_db(&gathered, &compared).unwrap_or_default();
+            let error_db = rms_db(&errors).unwrap_or(f64::INFINITY);
+            let least = best.as_ref().map(|(.., least)| least - WORTH_DB);
             if least.is_none_or(|least| error_db < least) {
-                best = Some((gathered, error_db));
+                best = Some((gathered, errors, error_db));
             } else if *ratio < COMPARED_RATIO {
                 // Coarse grids are all tried, but a denser one only as long as this improves the
                 // error.
                 break;
             }
         }
-        let (gathered, error_db) =
+        let (gathered, errors, error_db) =
             best.ok_or(AuthorError::NoSegments { source_name: String::new() })?;
         Ok(SearchResult {
             left_out: self.left_out(&gathered)?,
             left_out_rms_db: Some(error_db).filter(|db| db.is_finite()),
             gathered,
-            one_condition_rms_db,
+            one_condition_rms_db: rms_db(&one_condition),
+            worse_db: worse_db(&errors, &one_condition),
         })
     }
 
@@ -153,13 +161,17 @@ impl<'a> Search<'a> {
 
     /// Returns the error of a grid: for each block of time, a grid is made without the block, and
     /// the spectrum that is played from it is compared with the block.
-    fn error_db(&self, gathered: &CellSpectra, compared: &[Vec<HeldOutWindows>]) -> Option<f64> {
+    fn errors_db(
+        &self,
+        gathered: &CellSpectra,
+        compared: &[Vec<HeldOutWindows>],
+    ) -> Option<Vec<Vec<f64>>> {
         let mut errors = Vec::new();
         for (spectra, held) in gathered.without.iter().zip(compared) {
             let played = PlayedSpectra::new(gathered.conditions(spectra), self.kind.contact)?;
             errors.extend(errors_db(&played, held));
         }
-        rms_db(&errors)
+        Some(errors)
     }
 
     /// Returns the error of a single condition for all motions: the mean of all windows, placed at
@@ -167,11 +179,12 @@ impl<'a> Search<'a> {
     fn one_condition_db(
         &mut self,
         compared: &[Vec<HeldOutWindows>],
-    ) -> Result<Option<f64>, AuthorError> {
+    ) -> Result<Vec<Vec<f64>>, AuthorError> {
         let mut errors = Vec::new();
         for (fold, held) in self.folds.iter().zip(compared) {
             let known = &fold.known;
             if known.is_empty() {
+                errors.extend(held.iter().map(|_| Vec::new()));
                 continue;
             }
             let spectrum = averaged(&mut self.paths, self.windows, known, None, self.kind)?;
@@ -185,9 +198,12 @@ impl<'a> Search<'a> {
             };
             let one = vec![ConditionSpectrum { condition, spectrum, block_power: None }];
             let played = PlayedSpectra::new(one, self.kind.contact);
-            errors.extend(played.iter().flat_map(|played| errors_db(played, held)));
+            match played {
+                Some(played) => errors.extend(errors_db(&played, held)),
+                None => errors.extend(held.iter().map(|_| Vec::new())),
+            }
         }
-        Ok(rms_db(&errors))
+        Ok(errors)
     }
 
     /// Returns the chosen grid fitted without each block of time, together with the blocks.
@@ -203,6 +219,18 @@ impl<'a> Search<'a> {
         };
         Ok(blocks.map(block).collect())
     }
+}
+
+/// Returns the mean by which the errors of a grid exceed the errors of one condition, over groups of
+/// left-out windows, and half the width of its 95 % interval; `None` with fewer than four groups.
+fn worse_db(grid: &[Vec<f64>], one: &[Vec<f64>]) -> Option<[f64; 2]> {
+    let both = grid.iter().zip(one).filter(|(a, b)| !a.is_empty() && a.len() == b.len());
+    let worse: Vec<f64> = both.map(|(a, b)| rms(a) - rms(b)).collect();
+    let count = worse.len() as f64;
+    let mean = worse.iter().sum::<f64>() / count;
+    let square = worse.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+    let error = (square / (count * (count - 1.0))).sqrt();
+    (worse.len() >= FEWEST_GROUPS).then(|| [mean, 1.96 * error])
 }
 
 impl CellSpectra {

@@ -93,9 +93,8 @@ impl ShapedModel for SpectralBeta {
         StaticOption::choice(
             "refit",
             &["if_high", "never"],
-            "Whether a fit to only the peaks (`bins` 0) is repeated if its maximum is higher than twice the largest \
-             bin. `if_high`: the second fit also uses as many bins as `points` says, and the fit that is nearer in \
-             decibels is kept. `never`: the first fit is kept, as in the paper.",
+            "`if_high`: if a fit to only the peaks exceeds twice the largest bin, `points` bins are fitted too, and the \
+             fit that is nearer in decibels is kept. `never`: as in the paper.",
         )
         .sweep_alone(&[1.0]),
     ]);

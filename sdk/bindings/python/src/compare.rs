@@ -1,6 +1,6 @@
 //! Compares recordings with textures and with other recordings.
 
-use htex_author::{Difference, compare as compared};
+use htex_author::{Difference, FluctuationDifference, compare as compared, fluctuation};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
@@ -37,8 +37,10 @@ pub(crate) fn compare<'py>(
 }
 
 fn with_texture(source: Source, texture: &Texture, reading: &Reading) -> PyResult<Value> {
-    let (_, read, spectrum) = reading.spectrum(source)?;
-    let models = compared(texture.asset(), &spectrum, read.motion).map_err(raised)?;
+    let (recording, read, spectrum) = reading.spectrum(source)?;
+    let fluctuates = fluctuation(&recording);
+    let models = compared(texture.asset(), &spectrum, read.motion, fluctuates.as_ref());
+    let models = models.map_err(raised)?;
     Ok(json!({
         "condition": condition(read.motion, &spectrum),
         "representations": models,
@@ -49,8 +51,10 @@ fn with_texture(source: Source, texture: &Texture, reading: &Reading) -> PyResul
 }
 
 fn with_recording(source: Source, other: Source, reading: &Reading) -> PyResult<Value> {
-    let (_, read, spectrum) = reading.spectrum(source)?;
-    let (_, other_read, other) = reading.spectrum(other)?;
+    let (recording, read, spectrum) = reading.spectrum(source)?;
+    let (other_recording, other_read, other) = reading.spectrum(other)?;
+    let both = fluctuation(&recording).zip(fluctuation(&other_recording));
+    let fluctuates = both.map(|(a, b)| FluctuationDifference::new(&a, &b));
     let difference = Difference::between(&spectrum, &other).ok_or_else(|| {
         RecordingError::new_err(format!(
             "{} at {} to {} Hz cannot be compared with {} at {} to {} Hz; compare recordings of one quantity and rate",
@@ -62,11 +66,15 @@ fn with_recording(source: Source, other: Source, reading: &Reading) -> PyResult<
             spectrum.band.high_hz,
         ))
     })?;
+    let mut different = serde_json::to_value(&difference).unwrap_or_default();
+    if let Value::Object(entries) = &mut different {
+        entries.insert("fluctuation".to_owned(), json!(fluctuates));
+    }
     let warnings = [read.warnings, other_read.warnings].concat();
     Ok(json!({
         "condition": condition(read.motion, &spectrum),
         "representations": [],
-        "other": difference,
+        "other": different,
         "other_condition": condition(other_read.motion, &other),
         "warnings": warnings,
     }))

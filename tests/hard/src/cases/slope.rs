@@ -224,17 +224,17 @@ const CASES: &[Case] = &[
         "a flat spectrum",
         "sSlope",
         "fit, each way of measuring",
-        none("the peak is the first bin, both orders are 1"),
-        || failures(all_ways(&[1.0; 197], [20.0, 1.0, 1.0])),
+        none("the peak is the first bin, both orders are the lowest, 1/4"),
+        || failures(all_ways(&[1.0; 197], [20.0, 0.25, 0.25])),
     ),
     within(
         "the peak on the first and on the last bin, 60 dB/decade beside it",
         "sSlope",
         "fit, each way of measuring",
-        none("order 3 where there is a side, 1 where there is none"),
+        none("order 3 where there is a side, 1/4 where there is none"),
         || {
-            let first = all_ways(&roof(20.0, 60.0), [20.0, 1.0, 3.0]);
-            let last = all_ways(&roof(1_000.0, 60.0), [1_000.0, 3.0, 1.0]);
+            let first = all_ways(&roof(20.0, 60.0), [20.0, 0.25, 3.0]);
+            let last = all_ways(&roof(1_000.0, 60.0), [1_000.0, 3.0, 0.25]);
             failures(first.into_iter().chain(last))
         },
     ),

@@ -320,8 +320,8 @@ class Comparison:
     condition: Condition
     """Speed, force and repeatability of the recording."""
     representations: list[dict[str, Any]]
-    """Comparison with a texture: for each representation its model, level, error measures and the
-    error that a finger can feel."""
+    """Comparison with a texture: for each representation its model, level, error measures, the
+    error that a finger can feel, and how its voice fluctuates compared with the recording."""
     other: dict[str, Any] | None
     """Comparison with another recording: the same measures; otherwise ``None``."""
     other_condition: Condition | None
@@ -332,9 +332,11 @@ class Comparison:
     def table(self) -> dict[str, list[Any]]:
         """Return the measures as columns for pandas or polars."""
         rows = [self.other] if self.other else self.representations
-        names = list(dict.fromkeys(name for row in rows for name in row if name not in ("felt", "band_error_db")))
+        names = list(dict.fromkeys(name for row in rows for name in row if name not in ("felt", "band_error_db", "fluctuation")))
         columns = {name: [row.get(name) for row in rows] for name in names}
         columns["felt_error_rms_db"] = [row["felt"]["error_rms_db"] for row in rows]
+        fluctuations = [row["fluctuation"] or {} for row in rows]
+        columns["fluctuation_error_db"] = [found.get("fluctuation_error_db") for found in fluctuations]
         return columns
 
     def __repr__(self) -> str:

@@ -230,7 +230,7 @@ fn worse_db(grid: &[Vec<f64>], one: &[Vec<f64>]) -> Option<[f64; 2]> {
     let mean = worse.iter().sum::<f64>() / count;
     let square = worse.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
     let error = (square / (count * (count - 1.0))).sqrt();
-    (worse.len() >= FEWEST_GROUPS).then(|| [mean, 1.96 * error])
+    (worse.len() >= FEWEST_GROUPS).then_some([mean, 1.96 * error])
 }
 
 impl CellSpectra {

@@ -26,7 +26,7 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
 /// floor. Both axes are logarithmic.
 pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
-    let window = Window::new(&shown, against);
+    let window = Window::new(points, against);
     let [low, high] = window.costs;
     let [least, most] = window.errors;
     let label = format!("{} / {}", against.error, against.error.unit());
@@ -84,16 +84,20 @@ struct Window {
 }
 
 impl Window {
-    /// Shows the front of all models and the floor. A model that is far worse than the front would
-    /// otherwise take most of the picture, and the size of the recording most of its width.
-    fn new(shown: &[&Point], against: Against) -> Self {
-        let models = || shown.iter().filter(|p| p.model != RECORDING);
-        let costs = models().map(|p| against.place(p).0).filter(|cost| cost.is_finite());
+    /// Shows the front of all models against bytes, and the floor. A model that is far worse than
+    /// the front would otherwise take most of the picture, and the size of the recording most of
+    /// its width. Both pictures show the same errors.
+    fn new(points: &[&Point], against: Against) -> Self {
+        let shown = |cost: Cost| points.iter().copied().filter(move |p| cost.compares(p));
+        let models = shown(against.cost).filter(|p| p.model != RECORDING);
+        let costs = models.map(|p| against.place(p).0).filter(|cost| cost.is_finite());
         let [low, high] = ends(costs);
-        let front: Vec<&Point> = along_front(shown, against);
-        let errors = front.into_iter().chain(shown.iter().copied().filter(|p| p.is_baseline()));
-        let errors = errors.map(|p| against.place(p).1).filter(|error| *error > 0.0);
-        let [least, most] = ends(errors.filter(|error| error.is_finite()));
+        let by_bytes = Against { cost: Cost::Bytes, ..against };
+        let compared: Vec<&Point> = shown(Cost::Bytes).collect();
+        let front = along_front(&compared, by_bytes).into_iter();
+        let baselines = compared.iter().copied().filter(|p| p.is_baseline());
+        let errors = front.chain(baselines).map(|p| by_bytes.place(p).1);
+        let [least, most] = ends(errors.filter(|error| *error > 0.0 && error.is_finite()));
         Self { costs: [low / MARGIN, high * MARGIN], errors: [least / MARGIN, most * MARGIN] }
     }
 }
@@ -108,7 +112,7 @@ fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
 /// Returns a sentence about models that lie entirely above the plot; `None` if there are none.
 pub(crate) fn above(points: &[&Point], models: &[String], against: Against) -> Option<String> {
     let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
-    let [_, most] = Window::new(&shown, against).errors;
+    let [_, most] = Window::new(points, against).errors;
     let outside = models.iter().filter_map(|model| {
         let own = shown.iter().filter(|p| p.model == *model);
         let errors = own.map(|p| against.place(p).1).filter(|error| error.is_finite());

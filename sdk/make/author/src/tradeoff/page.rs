@@ -6,7 +6,7 @@ use htex_format::{By, ErrorMeasure, Measure, MeasureKind};
 use crate::tradeoff::against::Cost;
 use crate::tradeoff::error_axis::ErrorAxis;
 use crate::tradeoff::figure::{above, figure};
-use crate::tradeoff::knee::{Knee, along_front, knee};
+use crate::tradeoff::knee::{Knee, along_front};
 use crate::tradeoff::point::{errors, others};
 use crate::tradeoff::{Point, QUANTISED, RECORDING, Tradeoff};
 
@@ -44,31 +44,37 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     page.render()
 }
 
-/// Returns the answer in one sentence: the setting at the knee of the front against bytes, and what
-/// the smallest error costs.
+/// An error is nearly as small as that of a second recording if it is at most this many times as
+/// large.
+const NEARLY: f64 = 1.2;
+
+/// Returns the answer in one sentence: the smallest setting that is nearly as good as a second
+/// recording.
 fn answer(tradeoff: &Tradeoff, summary: &[&Point]) -> Option<String> {
     let against = tradeoff.against(Cost::Bytes);
+    let recording = summary.iter().find(|p| p.model == RECORDING)?;
+    let floor = against.place(recording).1;
     let models = summary.iter().copied().filter(|p| p.model != RECORDING);
     let shown: Vec<&Point> = models.filter(|p| Cost::Bytes.compares(p)).collect();
     let front = along_front(&shown, against);
-    let places: Vec<(f64, f64)> = front.iter().map(|p| against.place(p)).collect();
-    let at = knee(&places)?;
-    let error = |i: usize| against.error.amount(places[i].1);
-    let last = front.len() - 1;
-    let first = format!(
-        "{} needs {} bytes and {:.1} ns a sample for an error of {}",
-        front[at].name(),
-        front[at].bytes,
-        front[at].ns_per_sample,
-        error(at)
+    let near = front.iter().find(|p| against.place(p).1 <= NEARLY * floor);
+    let best = near.or(front.last())?;
+    let which = match near {
+        Some(_) => "The smallest setting that is nearly as good as a second recording is",
+        None => "No setting is nearly as good as a second recording. The best one is",
+    };
+    let mut answer = format!(
+        "{which} {}: it needs {} bytes and {:.1} ns a sample, and its {} is {}",
+        best.name(),
+        best.bytes,
+        best.ns_per_sample,
+        against.error,
+        against.error.amount(against.place(best).1)
     );
-    Some(if at == last {
-        format!("{first}, and no setting has a smaller error.")
-    } else {
-        let best = front[last];
-        let (name, bytes) = (best.name(), best.bytes);
-        format!("{first}; the smallest error, {}, needs {bytes} bytes ({name}).", error(last))
-    })
+    if against.error != ErrorAxis::HeldOut {
+        answer += &format!(" (a second recording: {})", against.error.amount(floor));
+    }
+    Some(answer + ".")
 }
 
 fn reading(tradeoff: &Tradeoff) -> String {

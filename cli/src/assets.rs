@@ -6,7 +6,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use htex_author::settings::Metadata;
-use htex_author::{FeltError, GridReport};
+use htex_author::{FeltError, GridReport, REPEATABILITY_BOUND};
 use htex_base::files::AtFile;
 use htex_base::finding::plain;
 use htex_format::{
@@ -275,6 +275,14 @@ fn short_number(x: f64) -> String {
 }
 
 /// Describes a condition's speed, force and repeatability, as far as they are known.
+/// Describes how much a second recording differs, from the repeatability of the first one.
+pub(crate) fn repeats(db: f64) -> String {
+    let bound = REPEATABILITY_BOUND * db;
+    format!(
+        "a second recording differs by {db:.2} dB (median), nine in ten by at most {bound:.1} dB"
+    )
+}
+
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
     match condition.segments {
@@ -285,7 +293,7 @@ fn condition_text(condition: &Condition) -> String {
         None => {}
     }
     if let Some(db) = condition.repeatability_rms_db {
-        let _ = write!(text, ", the recording itself repeats within {db:.2} dB");
+        let _ = write!(text, ", {}", repeats(db));
     }
     text
 }

@@ -13,7 +13,7 @@ use htex_format::Measure;
 use serde::Serialize;
 
 use super::validate::{Kind, kind};
-use crate::assets::short_name;
+use crate::assets::{repeats, short_name};
 use crate::columns::{Column, cells, columns, headings};
 use crate::differences;
 use crate::failure::{Failure, Result};
@@ -238,7 +238,7 @@ impl Display for Comparison {
             None => self.table(f)?,
         }
         match self.repeatability_rms_db {
-            Some(db) => writeln!(f, "the recording itself repeats within {db:.2} dB"),
+            Some(db) => writeln!(f, "expected: {}", repeats(db)),
             None => Ok(()),
         }
     }
@@ -306,7 +306,7 @@ impl Display for OtherRecording {
             None => writeln!(f, "{TOO_SHORT}")?,
         }
         match self.repeatability_rms_db {
-            Some(db) => writeln!(f, "{name} repeats within {db:.2} dB"),
+            Some(db) => writeln!(f, "expected from {name}: {}", repeats(db)),
             None => Ok(()),
         }
     }

@@ -15,7 +15,7 @@ function shapeError({ at }: Model) {
 
 function feltWords(felt: FeltError | null, isRecorded: boolean) {
   if (!felt) return "Not measured.";
-  return words(felt) + (isRecorded && felt.within_repeatability ? " It is as near as the recording is to itself." : "");
+  return words(felt) + (isRecorded && felt.within_repeatability ? " A second recording could differ as much." : "");
 }
 
 function shapeWords(db: number | null) {

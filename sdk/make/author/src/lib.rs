@@ -87,7 +87,7 @@ pub use edit::edit;
 pub use embed::embed_plugins;
 pub use error::{AuthorError, AuthorErrorKind};
 pub use exploration::{Exploration, Spread};
-pub use felt::{Felt, FeltError, FeltShare, felt, threshold_magnitude};
+pub use felt::{Felt, FeltError, FeltShare, REPEATABILITY_BOUND, felt, threshold_magnitude};
 pub use findings::recording_findings;
 pub use fit::{representation, stored_fields};
 pub use fluctuation::{FluctuationDifference, SECOND_TAKES_DB, fluctuation};

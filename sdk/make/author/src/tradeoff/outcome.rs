@@ -24,7 +24,7 @@ const METHOD: &str = "times are medians of interleaved runs on one core, with wa
     their spreads, the one with the least error. The recording's errors are the difference between its odd and even blocks. \
     share_not_felt: recordings that are below the detection threshold as a whole; share_below_threshold: other recordings whose difference by \
     magnitudes is below the difference threshold in every band; \
-    share_within_repeatability: recordings whose nine-band error is at or below their own repeatability, which says nothing about what is felt.";
+    share_within_repeatability: recordings whose nine-band error is at most 3.5 times their own repeatability, which says nothing about what is felt.";
 
 /// The machine on which a sweep ran.
 #[derive(Debug, Clone, PartialEq, Serialize)]

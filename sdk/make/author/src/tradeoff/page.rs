@@ -103,7 +103,7 @@ fn reading(tradeoff: &Tradeoff) -> String {
          what was fitted to the nine-band error, third-octave error and log-spectral distance, and what is felt of the difference: forces become \
          displacements of the skin, of which what is above the detection threshold counts, in third octaves. Below threshold is the share of \
          the recordings that can be felt and whose difference is below the difference threshold in every band; apart from that, repeats is the share whose \
-         nine-band error is at or below the recording's own repeatability, which says how well a recording repeats and not what is felt. Two \
+         nine-band error is at most 3.5 times the recording's own repeatability, which says how well a recording repeats and not what is felt. Two \
          baselines are in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
          between its odd and even blocks."
     )

@@ -32,7 +32,7 @@ pub struct Share {
     /// Textures whose difference is below the difference threshold of a person with a sensitive
     /// finger.
     pub below_if_sensitive: usize,
-    /// Textures whose nine-band error is at or below the recording's repeatability.
+    /// Textures whose nine-band error is at most 3.5 times the recording's repeatability.
     pub within_repeatability: usize,
 }
 

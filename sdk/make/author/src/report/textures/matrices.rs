@@ -2,6 +2,7 @@
 //! of models by bands.
 
 use super::data::{Measure, ModelResult, Texture, TextureReport};
+use crate::REPEATABILITY_BOUND;
 use crate::report::markup::Element;
 use crate::report::number::fixed;
 use crate::report::page::paragraph;
@@ -23,8 +24,8 @@ pub(super) fn summary(report: &TextureReport) -> String {
         .collect();
     let out = Element::new("div").set("class", "tables").raw(&tables);
     let note = paragraph(
-        "* at or below the recording's own repeatability: parts of the recording differ from each other \
-         by as much, so smaller errors do not distinguish models.",
+        "* within repeatability: at most 3.5 times what a second recording is expected to differ by. One in ten second \
+         recordings differs by more, so smaller errors do not distinguish models.",
     );
     out.render() + "\n" + &note
 }
@@ -44,7 +45,8 @@ fn table(report: &TextureReport, at: usize, measure: &Measure) -> Table {
             return Cell::Missing;
         };
         let own = texture.repeatability_rms_db.filter(|_| measure.repeats);
-        let mark = if own.is_some_and(|own| value <= own) { WITHIN } else { "" };
+        let mark =
+            if own.is_some_and(|own| value <= REPEATABILITY_BOUND * own) { WITHIN } else { "" };
         Cell::Shaded(value, mark)
     };
     let mut table = by_model(report, cell);

@@ -8,8 +8,8 @@ use crate::report::table::{Cell, HeatScale, Row, Table};
 const CAPTION: &str = "Textures whose difference is below the difference threshold, and textures within what the recording varies";
 const NOTE: &str = "Cannot be felt itself: the whole recorded texture is below a fingertip's detection threshold, so no difference from it is judged. Below the difference threshold: what is above a fingertip's detection threshold differs by less than \
     1.6 dB (20 %) in every third octave, and in all together. Sensitive finger: the same for a threshold 10 dB lower and a skin that yields \
-    twice as far. Neither is a rating by a participant. Within repeatability: the nine-band error is at or below the difference between parts \
-    of the recording. That says how well the recording repeats, not what is felt.";
+    twice as far. Neither is a rating by a participant. Within repeatability: the nine-band error is at most 3.5 times the difference \
+    that is expected between two recordings, as for nine in ten second recordings. That says how well the recording repeats, not what is felt.";
 
 /// Returns the table with an explanation; empty if there are no shares.
 pub(super) fn table(report: &TextureReport) -> String {

@@ -204,7 +204,7 @@ impl Bands {
             }
         }
         let count = (self.axes.len() * self.len) as f64;
-        let kurtosis = fourth / count / (second / count).powi(2);
+        let kurtosis = count * fourth / (second * second);
         kurtosis.is_finite().then_some(kurtosis)
     }
 

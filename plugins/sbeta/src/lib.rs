@@ -86,15 +86,13 @@ impl ShapedModel for SpectralBeta {
             (0, 64),
             20,
             "Number of bins, evenly spaced in log frequency, to which the density is fitted in addition to the \
-             peaks. The first is the lowest bin; the largest bin is always added. 0: only the peaks, as in the \
-             paper.",
+             peaks. The largest bin is always added. 0: only the peaks, as in the paper.",
         )
         .sweep_alone(&[0.0, 5.0, 10.0, 20.0, 40.0]),
         StaticOption::choice(
             "refit",
             &["if_high", "never"],
-            "`if_high`: if a fit to only the peaks exceeds twice the largest bin, `points` bins are fitted too, and the \
-             fit that is nearer in decibels is kept. `never`: as in the paper.",
+            "`if_high`: a fit to only peaks above twice the largest bin also uses `points` bins. `never`: as in the paper.",
         )
         .sweep_alone(&[1.0]),
     ]);

@@ -21,7 +21,7 @@
 //! replacement. The 95 % intervals contain the exponent of the true spectra on simulated surfaces
 //! (`the_intervals_contain_the_exponent_of_the_true_spectra`). This exponent is not the same as the
 //! exponent of the relief: skin and sensor do not follow the speed, and on a smooth spectrum they
-//! lower it by up to 0.16.
+//! lower it by up to 0.25.
 
 use htex_dsp::uniform::Uniform;
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};

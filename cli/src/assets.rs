@@ -274,7 +274,6 @@ fn short_number(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Describes a condition's speed, force and repeatability, as far as they are known.
 /// Describes how much a second recording differs, from the repeatability of the first one.
 pub(crate) fn repeats(db: f64) -> String {
     let bound = REPEATABILITY_BOUND * db;
@@ -283,6 +282,7 @@ pub(crate) fn repeats(db: f64) -> String {
     )
 }
 
+/// Describes a condition's speed, force and repeatability, as far as they are known.
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
     match condition.segments {

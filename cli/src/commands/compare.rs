@@ -107,7 +107,7 @@ struct OtherRecording {
 /// What is compared of a recording.
 struct Recorded {
     spectrum: TextureSpectrum,
-    /// `None` if the recording is too short to measure this.
+    /// `None` if this cannot be measured, e.g. in a short recording.
     fluctuation: Option<Fluctuation>,
     motion: Exploration,
     warnings: Vec<Notice>,
@@ -262,7 +262,7 @@ impl Comparison {
                 let kurtosis = first.kurtosis[0];
                 writeln!(f, "kurtosis of the recording: {kurtosis:.2} (noise: 3)")
             }
-            Some(None) => writeln!(f, "{TOO_SHORT}"),
+            Some(None) => writeln!(f, "{NOT_MEASURED}"),
             None => Ok(()),
         }
     }
@@ -303,7 +303,7 @@ impl Display for OtherRecording {
                     fluctuation.fluctuation_error_db
                 )?;
             }
-            None => writeln!(f, "{TOO_SHORT}")?,
+            None => writeln!(f, "{NOT_MEASURED}")?,
         }
         match self.repeatability_rms_db {
             Some(db) => writeln!(f, "expected from {name}: {}", repeats(db)),
@@ -313,4 +313,5 @@ impl Display for OtherRecording {
 }
 
 /// Why a fluctuation is missing.
-const TOO_SHORT: &str = "fluctuation: not measured; it needs a recording of at least 3 s";
+const NOT_MEASURED: &str =
+    "fluctuation: not measured; it needs 3 s with power in every third octave";

@@ -229,11 +229,21 @@ fn one_flag_makes_every_choice_of_the_paper() {
     };
     assert_eq!(recorded(&paper).0, recorded(&explicit).0);
     assert_eq!(recorded(&paper).1.unwrap(), "paper");
-    let other = fit("--as paper --model sslope --option sslope.rounding_db_per_decade=1");
-    let options = recorded(&other).0;
-    assert_eq!(options["sslope.rounding_db_per_decade"], "1");
-    assert_eq!(options["averaging"], "magnitude");
-    assert!(!options.contains_key("sbeta.refit"));
+    let other = "--as paper --model sslope --option org.htex.sslope.rounding_db_per_decade=1";
+    let options = recorded(&fit(other)).0;
+    assert_eq!(options["org.htex.sslope.rounding_db_per_decade"], "1");
+    assert!(!options.contains_key("sslope.rounding_db_per_decade"));
+    assert!(options["averaging"] == "magnitude" && !options.contains_key("sbeta.refit"));
+    // A flag takes precedence also where it names the default.
+    let usual = "--segments windows --averaging rms --level recording --model sbeta,speak";
+    let (mixed, expected) = (
+        fit(&format!("--as paper {usual} --option speak.frequency=interpolated")),
+        fit(&format!(
+            "{usual} --option speak.phase=zero --option sbeta.error=magnitude \
+             --option sbeta.lower_bound=1 --option sbeta.bins=0 --option sbeta.refit=never"
+        )),
+    );
+    assert_eq!(mixed["representations"], expected["representations"]);
 }
 
 #[test]

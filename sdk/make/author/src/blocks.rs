@@ -10,7 +10,7 @@ use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::spectrum::Complex;
 
-use crate::spectrum::{Averaging, average};
+use crate::spectrum::{Averaging, SegmentSpectra, average, spans_of};
 
 /// Shortest and longest block, in segments of 0.2 s: 0.2 to 1 s.
 const BLOCK: [f64; 2] = [1.0, 5.0];
@@ -118,6 +118,25 @@ fn earliest(stretch: &[Span]) -> f64 {
 fn length(stretch: &[Span]) -> f64 {
     let to = stretch.iter().map(|span| span.to);
     to.fold(f64::NEG_INFINITY, f64::max) - earliest(stretch)
+}
+
+/// Returns the mean power of each block of recordings at one condition, on the grid of their band;
+/// `None` if there are fewer than four blocks.
+pub(crate) fn block_power(parts: &[SegmentSpectra]) -> Option<Vec<Vec<f64>>> {
+    let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
+    let of_spans = blocks(&spans)?;
+    let mut powers = Vec::<(Vec<f64>, f64)>::new();
+    for (spectrum, block) in parts.iter().flat_map(|part| &part.spectra).zip(of_spans) {
+        let Some(block) = block else { continue };
+        if block >= powers.len() {
+            powers.resize(block + 1, (vec![0.0; spectrum.len()], 0.0));
+        }
+        let (power, count) = &mut powers[block];
+        power.iter_mut().zip(spectrum).for_each(|(sum, bin)| *sum += bin.norm_sqr());
+        *count += 1.0;
+    }
+    let mean = |(power, count): (Vec<f64>, f64)| power.into_iter().map(|p| p / count).collect();
+    Some(powers.into_iter().map(mean).collect())
 }
 
 #[cfg(test)]

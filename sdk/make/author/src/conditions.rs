@@ -5,11 +5,12 @@ use htex_base::finding::{Finding, Findings, Notice};
 use htex_format::{Condition, Contact, Law, Source};
 use htex_host::FitCondition;
 
+use crate::blocks::block_power;
 use crate::findings::{differing, level_of};
 use crate::law::law;
 use crate::spectrum::{Averaging, SegmentSpectra};
 use crate::take::{SegmentedTake, refuse, sentence};
-use crate::{AuthorError, Exploration, TextureSpectrum, between, block_power};
+use crate::{AuthorError, Exploration, TextureSpectrum, between};
 
 /// The spectrum of one condition.
 #[derive(Debug, Clone)]

@@ -96,7 +96,7 @@ pub use htex_recording as recording;
 pub use htex_recording::{Recording, SetupResponse, velocity};
 pub use level::{Level, stored_level};
 pub use measure::{Agreement, agreement, read_spectrum, spectrum_of_samples};
-pub(crate) use odd_and_even::{OddAndEven, block_power, odd_and_even};
+pub(crate) use odd_and_even::{OddAndEven, odd_and_even};
 pub use recorded::RecordedLoop;
 pub use request::{AssetRequest, ModelRequest};
 pub(crate) use segments::segment_len;

@@ -64,25 +64,6 @@ pub(crate) fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Op
     })
 }
 
-/// Returns the mean power of each block of recordings at one condition, on the grid of their band;
-/// `None` if there are fewer than four blocks.
-pub(crate) fn block_power(parts: &[SegmentSpectra]) -> Option<Vec<Vec<f64>>> {
-    let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
-    let of_spans = blocks(&spans)?;
-    let mut powers = Vec::<(Vec<f64>, f64)>::new();
-    for (spectrum, block) in parts.iter().flat_map(|part| &part.spectra).zip(of_spans) {
-        let Some(block) = block else { continue };
-        if block >= powers.len() {
-            powers.resize(block + 1, (vec![0.0; spectrum.len()], 0.0));
-        }
-        let (power, count) = &mut powers[block];
-        power.iter_mut().zip(spectrum).for_each(|(sum, bin)| *sum += bin.norm_sqr());
-        *count += 1.0;
-    }
-    let mean = |(power, count): (Vec<f64>, f64)| power.into_iter().map(|p| p / count).collect();
-    Some(powers.into_iter().map(mean).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

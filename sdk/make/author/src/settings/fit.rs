@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::setting::settings;
 use super::{OneOrMore, Preset, ReadingSettings, one_or_more};
-use crate::{AssetRequest, AuthorError, Averaging, Grid, Level, ModelRequest, SegmentChoice};
+use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
 
 settings! {
     /// Settings for fitting models. A missing setting has its default.
@@ -30,11 +30,11 @@ settings! {
         /// default models are fitted.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
-            default_value = "all",
             value_delimiter = ',',
             value_name = "ID,…",
             help = "Models to fit, by short name or id, comma-separated. `all` selects the models \
-                    that htex fits by default; some models are fitted only if you name them"
+                    that htex fits by default; some models are fitted only if you name them \
+                    [default: all]"
         ))]
         pub models: Option<Vec<String>>,
 
@@ -64,11 +64,10 @@ settings! {
         /// Where the level of the representations comes from.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
-            default_value = "recording",
             display_order = 2,
             help = "How strong a model plays. `recording`: as strong as the recording (its RMS in \
                     the frequency band). `fitted`: as strong as the model's own fit. Bands always \
-                    plays at the level of its fit, because it stores energies"
+                    plays at the level of its fit, because it stores energies [default: recording]"
         ))]
         pub level: Option<Level> = "level",
 
@@ -169,9 +168,7 @@ impl FitSettings {
     /// When a model or an option is unknown, or an option names a model that is not being fitted.
     pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, AuthorError> {
         let models = self.named_models(registry)?;
-        let preset = self.preset.map_or(&[][..], Preset::options).iter();
-        let mut options: Vec<(&str, &str, String)> =
-            preset.map(|(owner, option, value)| (*owner, *option, (*value).to_owned())).collect();
+        let mut options: Vec<(&str, &str, String)> = self.preset_options(&models).collect();
         for (name, value) in &self.options {
             // A model's id has dots of its own, so the option is what follows the last dot.
             let (owner, option) = name.rsplit_once('.').ok_or_else(|| {
@@ -185,10 +182,6 @@ impl FitSettings {
                     fitted: models.iter().map(|m| m.short_name().to_owned()).collect(),
                 });
             }
-            let is_same = |(known, name, _): &(&str, &str, String)| {
-                *name == option && models.iter().any(|m| is(m, known) && is(m, owner))
-            };
-            options.retain(|known| !is_same(known));
             options.push((owner, option, value.to_string()));
         }
         let request = |model: LoadedModel| {
@@ -204,8 +197,7 @@ impl FitSettings {
     fn named_models(&self, registry: &Registry) -> Result<Vec<LoadedModel>, HostError> {
         let named = self.models.as_deref().unwrap_or_default();
         match self.preset {
-            // The command's default is `all`, which means that no model was named.
-            Some(preset) if named.is_empty() || named == ["all"] => {
+            Some(preset) if named.is_empty() => {
                 let names: Vec<String> =
                     preset.models().iter().map(|name| (*name).to_owned()).collect();
                 named_models(registry, &names)
@@ -214,16 +206,28 @@ impl FitSettings {
         }
     }
 
+    /// Returns the options of the preset for these models that the user has not given: model, name
+    /// and value.
+    fn preset_options(
+        &self,
+        models: &[LoadedModel],
+    ) -> impl Iterator<Item = (&'static str, &'static str, String)> {
+        let of_preset = self.preset.map_or(&[][..], Preset::options).iter();
+        let is_taken = move |owner: &str, option: &str| {
+            let Some(model) = models.iter().find(|model| is(model, owner)) else { return false };
+            let given = self.options.keys().filter_map(|name| name.rsplit_once('.'));
+            !given.into_iter().any(|(of, name)| name == option && is(model, of))
+        };
+        let taken = of_preset.filter(move |(owner, option, _)| is_taken(owner, option));
+        taken.map(|(owner, option, value)| (*owner, *option, (*value).to_owned()))
+    }
+
     /// Returns settings for reading, completed by the preset.
     fn reading(&self, reading: &ReadingSettings) -> ReadingSettings {
         let Some(preset) = self.preset else { return reading.clone() };
-        // The command fills in its own defaults, so a default cannot be told from what the user
-        // gave. Only other choices take precedence over the preset.
-        let segments = reading.segments.filter(|one| *one != SegmentChoice::default());
-        let averaging = reading.averaging.filter(|one| *one != Averaging::default());
         ReadingSettings {
-            segments: segments.or(Some(preset.segments())),
-            averaging: averaging.or(Some(preset.averaging())),
+            segments: reading.segments.or(Some(preset.segments())),
+            averaging: reading.averaging.or(Some(preset.averaging())),
             ..reading.clone()
         }
     }
@@ -257,13 +261,11 @@ impl FitSettings {
     ) -> Result<AssetRequest, AuthorError> {
         let reading = &self.reading(reading);
         let models = self.models(registry)?;
-        let given = self.level.filter(|level| *level != Level::default());
-        let level = given.or_else(|| self.preset.map(Preset::level)).unwrap_or_default();
+        let level = self.level.or(self.preset.map(Preset::level)).unwrap_or_default();
         let mut recorded = reading.recorded();
-        for (owner, option, value) in self.preset.map_or(&[][..], Preset::options) {
-            if models.iter().any(|request| is(&request.model, owner)) {
-                recorded.insert(format!("{owner}.{option}"), (*value).to_owned());
-            }
+        let fitted: Vec<LoadedModel> = models.iter().map(|one| one.model.clone()).collect();
+        for (owner, option, value) in self.preset_options(&fitted) {
+            recorded.insert(format!("{owner}.{option}"), value);
         }
         let options = self.options.iter();
         recorded.extend(options.map(|(name, value)| (name.clone(), value.to_string())));

@@ -122,21 +122,20 @@ settings! {
         /// Method of choosing segments.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
-            default_value = "auto",
             help = "Which segments of the recording to use. `sweeps`: the middle of each complete \
                     sweep. `windows`: evenly spaced windows. `auto`: sweeps if they represent at \
-                    least half of the sliding, otherwise windows; a sweep represents at most 2 s"
+                    least half of the sliding, otherwise windows; a sweep represents at most 2 s \
+                    [default: auto]"
         ))]
         pub segments: Option<SegmentChoice> = "segments",
 
         /// Method of averaging segments.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
-            default_value = "rms",
             help = "How to average the segments. `rms` averages the power, so that noise keeps its \
                     level. `magnitude` averages the magnitudes, as the paper probably does; noise \
                     is then 1.05 dB too low. `complex` averages the complex spectra, so that only \
-                    signals with the same phase in all segments remain"
+                    signals with the same phase in all segments remain [default: rms]"
         ))]
         pub averaging: Option<Averaging> = "averaging",
     }

@@ -44,8 +44,8 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     page.render()
 }
 
-/// An error is nearly as small as that of a second recording if it is at most this many times as
-/// large.
+/// A setting is nearly as good as a second recording if its error is at most this many times as
+/// large as the error of the second recording.
 const NEARLY: f64 = 1.2;
 
 /// Returns the answer in one sentence: the smallest setting that is nearly as good as a second

@@ -4,13 +4,15 @@ use crate::manifest::AtCondition;
 use crate::{Manifest, Quality};
 
 impl Manifest {
-    /// Returns the manifest with the numbers rounded as a writer stores them: measures of agreement
-    /// and repeatability to four decimals, levels to nine significant digits. Rounding a rounded
-    /// manifest changes nothing.
+    /// Returns the manifest as a writer stores it: with the lowest version that has its keys
+    /// ([`Self::lowest_version`]), measures of agreement and repeatability rounded to four decimals,
+    /// and levels to nine significant digits. Applying this twice changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
+        rounded.htex = self.lowest_version();
         for condition in &mut rounded.conditions {
             four_decimals(condition.repeatability_rms_db.iter_mut());
+            four_decimals(condition.repeatability_third_octave_rms_db.iter_mut());
         }
         for representation in &mut rounded.representations {
             representation.at.iter_mut().for_each(round_at);

@@ -80,6 +80,7 @@ mod texture_difference;
 pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
+pub use blocks::Repeatability;
 pub use compare::{ComparedModel, Difference, FeltDifference, compare};
 pub use conditions::RecordingFinding;
 pub use describe::{describe, played_model};

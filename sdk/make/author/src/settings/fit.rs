@@ -81,6 +81,17 @@ settings! {
         ))]
         pub keep_reference: Option<bool>,
 
+        /// Whether to fit only the recorded conditions, and none that are computed from them.
+        #[cfg_attr(feature = "clap", arg(
+            long = "recorded-only",
+            action = clap::ArgAction::SetTrue,
+            display_order = 5,
+            help = "Fit only the recorded conditions. Without this flag, htex adds computed \
+                    conditions: between recorded speeds, if frequencies follow the speed; and at \
+                    a third and three times the speed, if it is the only one and --contact is unknown"
+        ))]
+        pub recorded_only: Option<bool>,
+
         /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
         /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
         #[serde(deserialize_with = "one_or_more")]
@@ -283,6 +294,9 @@ impl FitSettings {
             strict: self.strict.unwrap_or_default(),
             grid: grid.transpose()?,
             keep_reference: self.keep_reference.unwrap_or_default(),
+            recorded_only: self
+                .recorded_only
+                .unwrap_or(self.preset.is_some_and(Preset::recorded_only)),
             recorded_options: recorded,
             tool: tool.to_owned(),
             ..AssetRequest::default()

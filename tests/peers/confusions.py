@@ -1,12 +1,12 @@
 """Compares measures of difference with people who told materials apart, using only NumPy, SciPy and
 the command as its users run it.
 
-    python tests/peers/confusions.py FOLDER [--htex COMMAND]
+    python tests/peers/confusions.py FOLDER [--htex COMMAND] [--levelled rms|peak|not]
 
 FOLDER contains four sounds of each of five materials from LMT-108, NAME1.wav to NAME4.wav
 (shinolab/vibrotactile-autoencoder, history, f3dc99a2). 18 people felt them on a vibrating display
-and said which material it was, 630 times (`CONFUSIONS`). Each sound is set to one level between 20
-and 1000 Hz, because people felt them that way. `htex compare` measures each pair of sounds from two
+and said which material it was, 630 times (`CONFUSIONS`). How the sounds were levelled is
+not known: each is set to one RMS between 20 and 1000 Hz, or to one peak, or is left as it is. `htex compare` measures each pair of sounds from two
 materials; the distance of the materials is the mean over the 16 pairs. The script prints Spearman's
 correlation, over the ten pairs of materials, between that distance and how seldom people took one
 material for the other. The interval contains 95 % of 1,000 draws of sounds and trials.
@@ -34,6 +34,7 @@ CONFUSIONS = np.array(
 PAIRS = [(i, j) for i in range(5) for j in range(i)]
 # Keys of `htex compare --json`, whose values are larger the more two sounds differ.
 MEASURES = [
+    "felt.sensation_error_rms",
     "felt.total_error_db",
     "felt.error_rms_db",
     "log_spectral_distance_db",
@@ -44,14 +45,16 @@ MEASURES = [
 DRAWS = 1000
 
 
-def levelled(path, to):
+def levelled(path, to, by):
     """Write a sound at a tenth of its rate, between 20 and 1000 Hz and at one level."""
     with wave.open(str(path)) as file:
         rate, channels = file.getframerate(), file.getnchannels()
         samples = np.frombuffer(file.readframes(file.getnframes()), "<i2").reshape(-1, channels)[:, 0]
     band = signal.butter(4, [20, 1000], "bandpass", fs=rate, output="sos")
     samples = signal.resample_poly(signal.sosfiltfilt(band, samples), 1, 10)
-    samples = 0.08 * samples / np.sqrt(np.mean(samples**2))
+    # As strong as 0.08 RMS, or a recorded full scale of 0.5.
+    level = {"rms": 0.08 / np.sqrt(np.mean(samples**2)), "peak": 0.5 / np.abs(samples).max(), "not": 0.5 / 32768}
+    samples = level[by] * samples
     with wave.open(str(to), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
@@ -101,6 +104,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--htex", default="htex", help="the command [default: htex]")
     parser.add_argument("--quantity", default="lateral_force", help="what the samples are taken for [default: lateral_force]")
+    parser.add_argument("--levelled", choices=("rms", "peak", "not"), default="rms", help="how sounds are levelled [default: rms]")
     chosen = parser.parse_args()
     command = os.path.abspath(shutil.which(chosen.htex) or chosen.htex)
     distances = {key: {} for key in MEASURES}
@@ -108,7 +112,7 @@ def main():
         name = lambda material, sound: f"{MATERIALS[material]}{sound + 1}.wav"
         for material in range(5):
             for sound in SOUNDS:
-                levelled(chosen.folder / name(material, sound), pathlib.Path(place) / name(material, sound))
+                levelled(chosen.folder / name(material, sound), pathlib.Path(place) / name(material, sound), chosen.levelled)
         for i, j in PAIRS:
             found = [[compared(command, place, name(i, k), name(j, m), chosen.quantity) for m in SOUNDS] for k in SOUNDS]
             for key, values in zip(MEASURES, np.moveaxis(np.array(found), 2, 0)):

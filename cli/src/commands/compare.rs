@@ -287,10 +287,11 @@ impl Display for OtherRecording {
         let felt = &self.difference.felt.error;
         writeln!(
             f,
-            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {}",
+            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together, {:.2} in sensation: {}",
             felt.error_rms_db,
             felt.largest_error_db,
             felt.total_error_db,
+            felt.sensation_error_rms,
             felt.verdict()
         )?;
         match self.fluctuation {

@@ -319,6 +319,8 @@ export interface FeltError {
   error_rms_db: number;
   largest_error_db: number;
   total_error_db: number;
+  /** RMS difference in sensation, (displacement / threshold)^0.3, over third octaves. */
+  sensation_error_rms: number;
   below_detection_threshold: boolean;
   below_difference_threshold: boolean;
   below_if_sensitive: boolean;
@@ -361,6 +363,8 @@ export interface Felt {
    */
   below_difference_threshold: boolean;
   below_if_sensitive: boolean;
+  /** RMS difference in sensation, (displacement / threshold)^0.3, over third octaves. */
+  sensation_error_rms: number;
 }
 
 export interface FitReport {

@@ -24,6 +24,7 @@ struct FeltSummary {
     error_rms_db: f64,
     largest_error_db: f64,
     total_error_db: f64,
+    sensation_error_rms: f64,
     below_detection_threshold: bool,
     below_difference_threshold: bool,
     below_if_sensitive: bool,
@@ -62,6 +63,7 @@ fn told(felt: Felt, if_sensitive: &Felt) -> FeltSummary {
         level_db: felt.level_db,
         error_db: felt.error_db,
         error_rms_db: felt.error_rms_db,
+        sensation_error_rms: felt.sensation_error_rms,
         largest_error_db: felt.largest_error_db,
         total_error_db: felt.total_error_db,
     }

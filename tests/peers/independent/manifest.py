@@ -7,6 +7,7 @@ import re
 from . import typed as t
 from .findings import Findings, Refused
 from .jsontext import parse
+from .tables import replace_tables
 
 # quantity: (unit, largest level)
 QUANTITIES = {
@@ -17,7 +18,7 @@ QUANTITIES = {
     "displacement": ("m", 100.0),
 }
 VERSION = re.compile(r"(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)")
-STEP_STORES = ("u16", "u8", "packed")
+STEP_STORES = ("u16", "u8", "packed", "coded")
 
 STEPS = t.Object({"scale*": t.Number(), "offset": t.Number(), "log": t.Boolean()})
 
@@ -35,7 +36,7 @@ class Store(t.Any):
         for key in kinds:
             STEPS.check(value[key], f"{pointer}/{key}")
         if len(kinds) != 1:
-            raise t.Wrong(pointer, "not one of u16, u8 and packed")
+            raise t.Wrong(pointer, "not one of u16, u8, packed and coded")
 
     def unknown(self, value, pointer):
         if isinstance(value, dict):
@@ -190,6 +191,7 @@ def accept(document, findings: Findings) -> dict:
     newer = check_version(document, "htex", "")
     if newer:
         findings.add("VERSION_NEWER", "/htex")
+    replace_tables(document)
     quantity = document.get("quantity")
     if isinstance(quantity, str) and quantity not in QUANTITIES:
         raise Refused("QUANTITY_UNKNOWN", "/quantity")

@@ -178,6 +178,12 @@ export interface FitSettings extends ReadingSettings, Metadata {
   /** Store the recorded spectra in the texture. */
   keep_reference?: boolean;
   /**
+   * Whether the texture is coded: fewer bytes, but readers of version 1.0 of the format refuse it.
+   * Default: `auto`, which codes a texture of more than eight conditions if its file becomes
+   * smaller.
+   */
+  coding?: "auto" | "coded" | "plain";
+  /**
    * Divides recordings of a free motion into conditions. The grid lines are speeds (mm/s) and
    * forces (N).
    */

@@ -24,6 +24,9 @@ use crate::triangles::Triangle;
 /// The version of the format that this crate reads and writes.
 pub const VERSION: &str = "1.0";
 
+/// The extension that a coded asset requires: coded fields, and tables of conditions.
+pub const CODED: &str = "org.htex.coded/1";
+
 /// The manifest of an asset: the metadata of one surface and its models.
 ///
 /// ```no_run
@@ -346,6 +349,9 @@ pub enum StoredAs {
     /// List of unsigned 8-bit integers `q`, stored as the differences between neighbours. Small
     /// differences take fewer bits.
     Packed(Steps),
+    /// Unsigned 8-bit integers `q`, predicted from the condition before and stored in a range code.
+    /// Only assets that require the extension [`CODED`] have this storage.
+    Coded(Steps),
 }
 
 /// Step size and offset of an integer storage.
@@ -365,6 +371,10 @@ pub struct Steps {
 impl StoredAs {
     fn is_f64(&self) -> bool {
         *self == Self::F64
+    }
+
+    pub(crate) fn is_coded(&self) -> bool {
+        matches!(self, Self::Coded(_))
     }
 }
 

@@ -51,6 +51,7 @@ mod asset;
 mod between;
 mod blocks;
 pub mod by_hand;
+mod coding;
 mod compare;
 mod conditions;
 mod describe;
@@ -80,6 +81,7 @@ mod texture_difference;
 pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
+pub use coding::Coding;
 pub use compare::{ComparedModel, Difference, FeltDifference, compare};
 pub use conditions::RecordingFinding;
 pub use describe::{describe, played_model};

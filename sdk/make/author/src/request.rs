@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use htex_host::LoadedModel;
 
 use crate::SpectrumOptions;
+use crate::coding::Coding;
 use crate::grid::Grid;
 use crate::level::Level;
 
@@ -66,6 +67,8 @@ pub struct AssetRequest {
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
+    /// Whether the asset is coded.
+    pub coding: Coding,
     /// Options whose values differ from their defaults, to be stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
     /// Program and version, stored in the provenance.

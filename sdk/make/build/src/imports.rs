@@ -43,6 +43,7 @@ const KEYS: [(&str, &str); 11] = [
     ("options", "option"),
     ("level", "level"),
     ("keep_reference", "keep_reference"),
+    ("coding", "coding"),
     ("grid", "grid"),
 ];
 /// Gates that apply to every texture. All other gates judge recordings and fits.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::setting::settings;
 use super::{OneOrMore, Preset, ReadingSettings, one_or_more};
-use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
+use crate::{AssetRequest, AuthorError, Coding, Grid, Level, ModelRequest};
 
 settings! {
     /// Settings for fitting models. A missing setting has its default.
@@ -80,6 +80,17 @@ settings! {
                     compression"
         ))]
         pub keep_reference: Option<bool>,
+
+        /// Whether the asset is coded: fewer bytes, but readers of version 1.0 of the format refuse
+        /// it.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            display_order = 5,
+            help = "Whether to code the asset: the same texture in fewer bytes, which readers of \
+                    version 1.0 of the format refuse. `auto`: only with more than eight \
+                    conditions, and only if the file becomes smaller [default: auto]"
+        ))]
+        pub coding: Option<Coding> = "coding",
 
         /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
         /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
@@ -283,6 +294,7 @@ impl FitSettings {
             strict: self.strict.unwrap_or_default(),
             grid: grid.transpose()?,
             keep_reference: self.keep_reference.unwrap_or_default(),
+            coding: self.coding.unwrap_or_default(),
             recorded_options: recorded,
             tool: tool.to_owned(),
             ..AssetRequest::default()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from .findings import Refused, escape
-from .jsontext import Whole
 
 CODED = "org.htex.coded/1"
 MOST_ROWS = 262144
@@ -23,7 +22,7 @@ def replace_tables(manifest: dict) -> None:
             continue
         rows = rows_of_table(representation["at"], f"/representations/{index}/at", left)
         for i, row in enumerate(rows):
-            row.setdefault("condition", Whole(str(i)))
+            row.setdefault("condition", float(i))
         representation["at"] = rows
 
 

@@ -10,13 +10,13 @@ use htex_author::{FeltError, GridReport, REPEATABILITY_BOUND};
 use htex_base::files::AtFile;
 use htex_base::finding::plain;
 use htex_format::{
-    Asset, AtCondition, Condition, How, Ingredient, Law, LeftOut, Limits, Made, Manifest, Measure,
-    StoredField,
+    Asset, AtCondition, Condition, HeldOut, How, Ingredient, Law, LeftOut, Limits, Made, Manifest,
+    Measure, StoredField,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::columns::{Column, cells, columns, headings};
+use crate::columns::{Column, Errors, cells, columns, headings};
 use crate::failure::Result;
 use crate::grid::grid_text;
 use crate::output::{show, warn, write_file};
@@ -62,6 +62,9 @@ pub(crate) struct RepresentationSummary {
 #[derive(Serialize)]
 pub(crate) struct AtSummary {
     parameters: Map<String, Value>,
+    /// The error on blocks of time to which the model was not fitted, if the asset states it.
+    #[serde(flatten)]
+    pub(crate) held_out: Option<HeldOut>,
     /// After a fit: the part of the error that a fingertip can feel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) felt: Option<FeltError>,
@@ -69,7 +72,7 @@ pub(crate) struct AtSummary {
 
 impl AssetSummary {
     pub(crate) fn new(file: &Path, bytes: u64, asset: &Asset) -> Self {
-        let manifest = asset.manifest.clone();
+        let manifest = Manifest { htex: asset.manifest.lowest_version(), ..asset.manifest.clone() };
         let all = manifest.representations.iter().zip(&asset.parameters).enumerate();
         let representations = all.map(|(i, (representation, sets))| RepresentationSummary {
             model: representation.model.clone(),
@@ -77,8 +80,13 @@ impl AssetSummary {
             fit_ms: None,
             at: sets
                 .iter()
-                .map(|set| AtSummary {
+                .zip(&representation.at)
+                .map(|(set, at)| AtSummary {
                     parameters: parameters_by_name(&representation.fields, set),
+                    held_out: HeldOut::new(
+                        at.left_out.as_ref(),
+                        &manifest.conditions[at.condition],
+                    ),
                     felt: None,
                 })
                 .collect(),
@@ -345,7 +353,8 @@ fn parameters_by_name(fields: &[StoredField], mut flat: &[f64]) -> Map<String, V
 impl AtSummary {
     /// Returns the value for a column of a table.
     pub(crate) fn measured(&self, stated: &AtCondition, column: Column) -> Option<f64> {
-        column.value(stated.quality.as_ref(), self.felt.as_ref())
+        let (quality, felt) = (stated.quality.as_ref(), self.felt.as_ref());
+        column.value(Errors { held_out: self.held_out, quality, felt })
     }
 
     /// Returns the spectral lines of a model that is a sum of sines, as pairs of frequency (Hz) and

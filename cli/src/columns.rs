@@ -1,26 +1,39 @@
 //! Columns for measures in text tables.
 
 use htex_author::FeltError;
-use htex_format::{By, Measure, Quality};
+use htex_format::{By, HeldOut, Measure, Quality};
 
 /// Minimum width of a column, characters; a correlation with its sign fits in it.
 const WIDTH: usize = 6;
 
-/// A column: a measure of the model's magnitudes or of rendered samples.
+/// A column of a table of errors.
 #[derive(Clone, Copy)]
-pub(crate) struct Column {
-    measure: Measure,
-    by: By,
+pub(crate) enum Column {
+    /// The held-out error in units of the difference between two recordings.
+    HeldOut,
+    /// The held-out error in decibels.
+    HeldOutDb,
+    /// A measure of the model's magnitudes or of rendered samples.
+    InSample(Measure, By),
 }
 
-/// Returns the measures that have a column, in this order: measures of magnitudes, measures of
-/// rendered samples, and measures that no asset stores.
+/// What is known of a fit at a condition.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Errors<'a> {
+    pub(crate) held_out: Option<HeldOut>,
+    pub(crate) quality: Option<&'a Quality>,
+    pub(crate) felt: Option<&'a FeltError>,
+}
+
+/// Returns the columns in this order: the held-out error, measures of magnitudes, measures of
+/// rendered samples, and measures that no asset stores. Measures without a heading have no column.
 pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column> {
     let all: Vec<Measure> = measures.into_iter().collect();
     let (stored, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|m| m.row().stored);
-    let played = stored.iter().map(|m| Column::new(*m, By::Samples));
-    let own = |m: &Measure| Column::new(*m, By::Magnitude);
-    let columns = stored.iter().map(own).chain(played).chain(others.iter().map(own));
+    let played = stored.iter().map(|m| Column::InSample(*m, By::Samples));
+    let own = |m: &Measure| Column::InSample(*m, By::Magnitude);
+    let columns = [Column::HeldOut, Column::HeldOutDb].into_iter().chain(stored.iter().map(own));
+    let columns = columns.chain(played).chain(others.iter().map(own));
     columns.filter(|column| !column.heading().is_empty()).collect()
 }
 
@@ -41,28 +54,23 @@ pub(crate) fn cells(columns: &[Column], value: impl Fn(Column) -> Option<f64>) -
 }
 
 impl Column {
-    pub(crate) fn new(measure: Measure, by: By) -> Self {
-        Self { measure, by }
-    }
-
     /// Returns the value of this column for a fit.
-    pub(crate) fn value(self, quality: Option<&Quality>, felt: Option<&FeltError>) -> Option<f64> {
-        match (self.measure, self.by) {
-            (Measure::Felt, _) => felt.map(|felt| felt.error_rms_db),
-            (measure, By::Magnitude) => quality?.get(measure),
-            (measure, By::Samples) => quality?.samples(measure),
+    pub(crate) fn value(self, errors: Errors<'_>) -> Option<f64> {
+        match self {
+            Self::HeldOut => errors.held_out?.held_out_error,
+            Self::HeldOutDb => Some(errors.held_out?.held_out_error_db),
+            Self::InSample(Measure::Felt, _) => errors.felt.map(|felt| felt.error_rms_db),
+            Self::InSample(measure, By::Magnitude) => errors.quality?.get(measure),
+            Self::InSample(measure, By::Samples) => errors.quality?.samples(measure),
         }
     }
 
-    pub(crate) fn measure(self) -> Measure {
-        self.measure
-    }
-
     fn heading(self) -> &'static str {
-        let row = self.measure.row();
-        let heading = match self.by {
-            By::Magnitude => row.column,
-            By::Samples => row.played,
+        let heading = match self {
+            Self::HeldOut => Some("held out"),
+            Self::HeldOutDb => Some("held-out/dB"),
+            Self::InSample(measure, By::Magnitude) => measure.row().column,
+            Self::InSample(measure, By::Samples) => measure.row().played,
         };
         heading.unwrap_or_default()
     }
@@ -72,6 +80,9 @@ impl Column {
     }
 
     fn decimals(self) -> usize {
-        self.measure.row().decimals
+        match self {
+            Self::HeldOut | Self::HeldOutDb => 2,
+            Self::InSample(measure, _) => measure.row().decimals,
+        }
     }
 }

@@ -105,7 +105,14 @@ impl ReportSource<'_> {
 
 /// Returns the tables of measures in a report: the column and the measure of each table.
 fn tables() -> Vec<(Column, Measure)> {
-    let mut tables = Vec::new();
+    let held_out = Measure {
+        caption: "Held-out error: third octaves of the blocks of time to which a model was not fitted, RMS in dB (0 is \
+                  the best, light)"
+            .to_owned(),
+        is_correlation: false,
+        repeats: false,
+    };
+    let mut tables = vec![(Column::HeldOutDb, held_out)];
     for measure in htex_format::Measure::of_both() {
         let row = measure.row();
         let kinds = [
@@ -119,7 +126,7 @@ fn tables() -> Vec<(Column, Measure)> {
                     is_correlation: row.judged == MeasureKind::Correlation,
                     repeats: measure == htex_format::Measure::NineBand,
                 };
-                (Column::new(measure, by), table)
+                (Column::InSample(measure, by), table)
             }));
         }
     }

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::validate::{Kind, kind};
 use crate::assets::{repeats, short_name};
-use crate::columns::{Column, cells, columns, headings};
+use crate::columns::{Column, Errors, cells, columns, headings};
 use crate::differences;
 use crate::failure::{Failure, Result};
 use crate::located;
@@ -129,7 +129,7 @@ impl Compare {
             speed_mm_s: recorded.motion.speed_mm_s,
             force_n: recorded.motion.force_n,
             representations: Vec::new(),
-            repeatability_rms_db: recorded.spectrum.repeatability_rms_db,
+            repeatability_rms_db: recorded.spectrum.repeatability_rms_db(),
             warnings: recorded.warnings.clone(),
         };
         match kind(&self.other) {
@@ -212,7 +212,7 @@ impl Compare {
             force_n: found.force_n,
             difference,
             fluctuation: both.map(|(a, b)| FluctuationDifference::new(a, b)),
-            repeatability_rms_db: other.repeatability_rms_db,
+            repeatability_rms_db: other.repeatability_rms_db(),
         };
         Ok((compared, second.warnings))
     }
@@ -250,7 +250,9 @@ impl Comparison {
         writeln!(f, "  model   {}  fluct/dB", headings(&columns))?;
         for r in &self.representations {
             let value = |column: Column| {
-                column.value(Some(&r.difference.quality), Some(&r.difference.felt.error))
+                let Difference { quality, felt, .. } = &r.difference;
+                let (quality, felt) = (Some(quality), Some(&felt.error));
+                column.value(Errors { held_out: r.held_out, quality, felt })
             };
             let fluctuation = r.fluctuation.map(|f| format!("{:.2}", f.fluctuation_error_db));
             let fluctuation = fluctuation.unwrap_or_else(|| "-".to_owned());

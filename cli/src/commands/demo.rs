@@ -12,7 +12,7 @@ use htex_author::{
     AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
 use htex_base::files::{AtFile, OwnFolder};
-use htex_format::{By, KeyedMeasures, Measure, Rights};
+use htex_format::{By, HeldOut, KeyedMeasures, Measure, Rights};
 use htex_host::Registry;
 use serde::Serialize;
 
@@ -165,6 +165,8 @@ struct Row {
     texture: String,
     model: String,
     #[serde(flatten)]
+    held_out: Option<HeldOut>,
+    #[serde(flatten)]
     by_magnitude: KeyedMeasures,
     felt: Option<FeltError>,
     #[serde(flatten)]
@@ -190,6 +192,7 @@ impl DemoTexture {
             Some(Row {
                 texture: self.texture.name.clone(),
                 model: short_name(&r.model).to_owned(),
+                held_out: at.held_out,
                 by_magnitude: quality.by_magnitude.keyed(By::Magnitude, own),
                 felt: at.felt,
                 by_samples: quality.by_samples.keyed(By::Samples, played),

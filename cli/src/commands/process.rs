@@ -120,7 +120,7 @@ impl Serialize for RecordingSpectrum<'_> {
             "speed_spread_mm_s": reading.spread.speed_mm_s,
             "force_n": reading.motion.force_n,
             "force_spread_n": reading.spread.force_n,
-            "repeatability_rms_db": spectrum.repeatability_rms_db,
+            "repeatability_rms_db": spectrum.repeatability_rms_db(),
             "simulated": recording.simulated,
             "findings": reading.findings,
             "warnings": reading.warnings,

@@ -214,7 +214,7 @@ impl Display for TradeoffReport<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let points = self.tradeoff.summary();
         let name = points.first().map_or("", |p| &p.recording);
-        let column = |measure| Column::new(measure, By::Magnitude);
+        let column = |measure| Column::InSample(measure, By::Magnitude);
         let has_column = |m: &Measure| m.row().column.is_some();
         let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
         let others: Vec<Column> = others().filter(has_column).map(column).collect();
@@ -228,7 +228,10 @@ impl Display for TradeoffReport<'_> {
         let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
         front.sort_by_key(|p| p.bytes);
         for p in front {
-            let value = |column: Column| Some(p.get(By::Magnitude, column.measure()));
+            let value = |column| match column {
+                Column::InSample(measure, by) => Some(p.get(by, measure)),
+                Column::HeldOut | Column::HeldOutDb => None,
+            };
             writeln!(
                 f,
                 "  {:>5}  {:>8.2}{}  {:>13.0} %{}  {:>9.1}  {}",

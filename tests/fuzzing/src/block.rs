@@ -29,8 +29,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
     let condition = |i: usize| Condition {
         speed_mm_s: Some(40.0 + 40.0 * (i % 2) as f64),
         force_n: Some(0.3 + 0.3 * (i / 2) as f64),
-        repeatability_rms_db: None,
-        segments: None,
+        ..Condition::default()
     };
     let at =
         |condition: usize| AtCondition { condition, level_rms: 0.1, quality: None, left_out: None };

@@ -116,7 +116,7 @@ fn take_spectra(recording: &Recording) {
                 Ok(spectrum) => {
                     finite("magnitude", spectrum.magnitude);
                     finite("signal", spectrum.signal);
-                    finite("repeatability", spectrum.repeatability_rms_db);
+                    finite("repeatability", spectrum.repeatability_rms_db());
                 }
                 Err(error) => sentence(&error),
             }

@@ -91,7 +91,7 @@ def check_conditions(manifest: dict, findings: Findings) -> None:
     seen = set()
     for index, condition in enumerate(manifest["conditions"]):
         pointer = f"/conditions/{index}"
-        for key in ("speed_mm_s", "force_n", "repeatability_rms_db"):
+        for key in ("speed_mm_s", "force_n", "repeatability_rms_db", "repeatability_third_octave_rms_db"):
             if condition.get(key, 0.0) < 0:
                 findings.add("CONDITION_INVALID", f"{pointer}/{key}")
         motion = (condition.get("speed_mm_s", 0.0), condition.get("force_n", 0.0))

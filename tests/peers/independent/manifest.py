@@ -17,6 +17,7 @@ QUANTITIES = {
     "velocity": ("m/s", 1e4),
     "displacement": ("m", 100.0),
 }
+MINOR = 1
 VERSION = re.compile(r"(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)")
 STEP_STORES = ("u16", "u8", "packed", "coded")
 
@@ -117,6 +118,7 @@ MANIFEST = t.Object(
                     "speed_mm_s": t.Number(),
                     "force_n": t.Number(),
                     "repeatability_rms_db": t.Number(),
+                    "repeatability_third_octave_rms_db": t.Number(),
                     "segments": t.Integer(),
                 }
             )
@@ -163,8 +165,8 @@ MANIFEST = t.Object(
 )
 
 
-def check_version(document: dict, key: str, prefix: str) -> bool:
-    """Section 7: whether the document is of a newer minor version; raises `Refused`."""
+def check_version(document: dict, key: str, prefix: str, minor: int = 0) -> bool:
+    """Section 7: whether the document's minor version is above `minor`; raises `Refused`."""
     if key not in document:
         raise Refused(prefix + "VERSION_MISSING")
     match = VERSION.fullmatch(document[key]) if isinstance(document[key], str) else None
@@ -172,7 +174,7 @@ def check_version(document: dict, key: str, prefix: str) -> bool:
         raise Refused(prefix + "VERSION_INVALID", f"/{key}")
     if match.group(1) != "1":
         raise Refused(prefix + "VERSION_UNSUPPORTED", f"/{key}")
-    return match.group(2) != "0"
+    return int(match.group(2)) > minor
 
 
 def read_manifest(data: bytes, limits: dict[str, int], findings: Findings) -> dict | None:
@@ -188,7 +190,7 @@ def accept(document, findings: Findings) -> dict:
     """The same after the text was parsed; raises `Refused`."""
     if not isinstance(document, dict):
         raise Refused("JSON_TYPE", "", "no object")
-    newer = check_version(document, "htex", "")
+    newer = check_version(document, "htex", "", MINOR)
     if newer:
         findings.add("VERSION_NEWER", "/htex")
     replace_tables(document)

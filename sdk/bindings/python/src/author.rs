@@ -61,7 +61,7 @@ pub(crate) fn condition(found: Exploration, spectrum: &TextureSpectrum) -> Value
     json!({
         "speed_mm_s": found.speed_mm_s,
         "force_n": found.force_n,
-        "repeatability_rms_db": spectrum.repeatability_rms_db,
+        "repeatability_rms_db": spectrum.repeatability_rms_db(),
     })
 }
 

@@ -219,6 +219,10 @@ impl Texture {
             fields.set_item("speed_mm_s", condition.speed_mm_s)?;
             fields.set_item("force_n", condition.force_n)?;
             fields.set_item("repeatability_rms_db", condition.repeatability_rms_db)?;
+            fields.set_item(
+                "repeatability_third_octave_rms_db",
+                condition.repeatability_third_octave_rms_db,
+            )?;
             fields.set_item("segments", condition.segments)?;
             list.append(data(py, "Condition", &fields)?)?;
         }

@@ -12,6 +12,8 @@ export interface ManifestCondition {
   force_n?: number;
   /** How much two such recordings differ, dB. */
   repeatability_rms_db?: number;
+  /** The same over third octaves, dB. */
+  repeatability_third_octave_rms_db?: number;
   /** Number of averaged segments; 0 for a computed condition. */
   segments?: number;
 }

@@ -124,6 +124,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
             ("speed_mm_s", condition.speed_mm_s),
             ("force_n", condition.force_n),
             ("repeatability_rms_db", condition.repeatability_rms_db),
+            ("repeatability_third_octave_rms_db", condition.repeatability_third_octave_rms_db),
         ];
         for (key, number) in numbers {
             if let Some(number) = number.filter(|number| !is_size(*number)) {

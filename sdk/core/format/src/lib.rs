@@ -86,7 +86,7 @@ pub use manifest::{
 };
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
 pub use page::{appearance_schema, manifest_schema, report_schema, validation_page};
-pub use quality::{KeyedMeasures, LeftOut, Measures, Quality};
+pub use quality::{HeldOut, KeyedMeasures, LeftOut, Measures, Quality};
 pub use quantity::{Quantity, UnknownName};
 pub use rights::{Rights, license_file, read_license_file};
 pub use rules::{

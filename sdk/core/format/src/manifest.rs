@@ -21,8 +21,11 @@ use crate::schema_words::{
 };
 use crate::triangles::Triangle;
 
-/// The version of the format that this crate reads and writes.
-pub const VERSION: &str = "1.0";
+/// The newest version of the format that this crate reads and writes. An asset is written in the
+/// lowest version that has its keys ([`Manifest::lowest_version`]).
+pub const VERSION: &str = "1.1";
+/// All versions that this crate writes, from the lowest on.
+const VERSIONS: [&str; 2] = ["1.0", VERSION];
 
 /// The extension that a coded asset requires: coded fields, and tables of conditions.
 pub const CODED: &str = "org.htex.coded/1";
@@ -121,6 +124,17 @@ impl Manifest {
     pub fn law(&self) -> Law {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
+    }
+
+    /// Returns the lowest version of the format that has the keys of this manifest. The version of a
+    /// manifest that is newer than [`VERSION`] is kept, because it may have keys of its own.
+    pub fn lowest_version(&self) -> String {
+        if !VERSIONS.contains(&&*self.htex) {
+            return self.htex.clone();
+        }
+        let since_1_1 = self.is_coded()
+            || self.conditions.iter().any(|c| c.repeatability_third_octave_rms_db.is_some());
+        VERSIONS[usize::from(since_1_1)].to_owned()
     }
 
     /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.
@@ -261,6 +275,11 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
+    /// The same as `repeatability_rms_db`, over third octaves instead of nine bands. From version
+    /// 1.1 on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub repeatability_third_octave_rms_db: Option<f64>,
     /// Number of recorded segments that were averaged at this condition, or 0 if the condition was
     /// interpolated between recorded conditions.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -16,7 +16,7 @@ const DOCUMENT: Document = Document {
     thing: "asset",
     version_key: "htex",
     major: 1,
-    minor: 0,
+    minor: 1,
     rules: DocumentRules {
         too_deep: rule::JSON_TOO_DEEP,
         syntax: rule::JSON_SYNTAX,

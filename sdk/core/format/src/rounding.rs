@@ -10,14 +10,17 @@ const DECIMALS: usize = 4;
 const DECIMALS_CODED: usize = 2;
 
 impl Manifest {
-    /// Returns the manifest with the numbers rounded as a writer stores them: measures of agreement
-    /// and repeatability to four decimals (in decibels to two if the asset is coded), levels to nine
-    /// significant digits. Rounding a rounded manifest changes nothing.
+    /// Returns the manifest as a writer stores it: with the lowest version that has its keys
+    /// ([`Self::lowest_version`]), measures of agreement and repeatability rounded to four decimals
+    /// (in decibels to two if the asset is coded), and levels to nine significant digits. Applying
+    /// this twice changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
+        rounded.htex = self.lowest_version();
         let decimals = if self.is_coded() { DECIMALS_CODED } else { DECIMALS };
         for condition in &mut rounded.conditions {
             round(condition.repeatability_rms_db.iter_mut(), decimals);
+            round(condition.repeatability_third_octave_rms_db.iter_mut(), decimals);
         }
         for representation in &mut rounded.representations {
             representation.at.iter_mut().for_each(|at| round_at(at, decimals));

@@ -5,7 +5,7 @@ use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
 
 use crate::conditions::ConditionSpectrum;
-use crate::fit::fit_condition;
+use crate::fit::fit_spectrum;
 use crate::level::Level;
 use crate::measure::{agreement, read_spectrum};
 use crate::request::ModelRequest;
@@ -127,7 +127,7 @@ fn error_of(
 ) -> Option<f64> {
     let reference = one.spectrum.as_ref();
     // Compared as an asset stores it, because the error to beat was measured like that too.
-    let fit = fit_condition(model, options, one, level).ok()?;
+    let fit = fit_spectrum(model, options, &one.spectrum, one.motion(), level).ok()?;
     let magnitude = read_spectrum(model, &fit.stored, fit.level_rms, reference).ok()?;
     let error = agreement(reference, &magnitude).get(Measure::NineBand);
     error.filter(|error| error.is_finite())

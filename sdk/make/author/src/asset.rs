@@ -152,7 +152,7 @@ pub fn new_asset(
     models: Vec<(Representation, Vec<Vec<f64>>)>,
 ) -> Asset {
     let (representations, parameters) = models.into_iter().unzip();
-    let manifest = Manifest {
+    let mut manifest = Manifest {
         htex: htex_format::VERSION.to_owned(),
         name: name.to_owned(),
         license: None,
@@ -177,5 +177,6 @@ pub fn new_asset(
         extensions_required: Vec::new(),
         other: BTreeMap::new(),
     };
+    manifest.htex = manifest.lowest_version();
     Asset { manifest, parameters, reference: None, plugins: Vec::new(), notes: Vec::new() }
 }

@@ -41,8 +41,8 @@ pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<Condi
             let spectrum = mixed([slow, fast], motion, exponent);
             let [speed_mm_s, force_n] = motion.map(|x| Some(four_digits(x)));
             let condition =
-                Condition { speed_mm_s, force_n, repeatability_rms_db: None, segments: Some(0) };
-            ConditionSpectrum { condition, spectrum, block_power: None }
+                Condition { speed_mm_s, force_n, segments: Some(0), ..Condition::default() };
+            ConditionSpectrum { condition, spectrum, block_power: None, halves: None }
         })
     };
     neighbours(recorded).into_iter().flat_map(between).take(MOST).collect()
@@ -123,7 +123,7 @@ fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> Text
     TextureSpectrum {
         magnitude,
         segments: 0,
-        repeatability_rms_db: None,
+        repeatability: None,
         signal: faster(&spectrum.signal, factors[nearest]),
         ..spectrum.clone()
     }

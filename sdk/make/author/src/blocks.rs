@@ -8,6 +8,7 @@
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
+use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_dsp::spectrum::Complex;
 
 use crate::spectrum::{Averaging, SegmentSpectra, average, spans_of};
@@ -29,30 +30,45 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// Returns the repeatability in decibels: by how much the spectra of two such recordings would
-/// differ. This is the RMS over nine bands of the difference between the spectra of odd and even
-/// blocks, divided by √2. `None` if there are fewer than four blocks, or half of them are silent.
+/// By how much the spectra of two recordings of one texture would differ, in decibels: the RMS of
+/// the difference between the spectra of odd and even blocks, divided by √2.
 ///
 /// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
 /// division by √2 corrects for this.
-pub(crate) fn repeatability_rms_db(
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Repeatability {
+    /// The RMS over nine bands.
+    pub band_rms_db: f64,
+    /// The RMS over third octaves; `None` if the band contains no third octave with energy.
+    pub third_octave_rms_db: Option<f64>,
+}
+
+/// Returns the repeatability of a texture. `None` if there are fewer than four blocks, or half of
+/// them are silent.
+pub(crate) fn repeatability(
     band: Band,
     spectra: &[&[Complex<f64>]],
     spans: &[Span],
     averaging: Averaging,
-) -> Option<f64> {
+) -> Option<Repeatability> {
     let blocks = blocks(spans)?;
     let grid = band.grid_hz();
-    let bank = BandBank::new(BAND_COUNT, band, &grid);
-    let energies = |parity: usize| {
+    let half = |parity: usize| {
         let of_half =
             blocks.iter().zip(spectra).filter(|(block, _)| block.is_some_and(|b| b % 2 == parity));
         let half: Vec<&[Complex<f64>]> = of_half.map(|(_, spectrum)| *spectrum).collect();
-        bank.energies(&average(&half, grid.len(), averaging))
+        average(&half, grid.len(), averaging)
     };
-    let difference_db = rms(&band_error_db(&energies(0), &energies(1)));
-    // The difference is not finite if half of the blocks are silent.
-    Some(difference_db / std::f64::consts::SQRT_2).filter(|db| db.is_finite())
+    let (odd, even) = (half(0), half(1));
+    let bank = BandBank::new(BAND_COUNT, band, &grid);
+    let nine_db = rms(&band_error_db(&bank.energies(&odd), &bank.energies(&even)));
+    let third_db = third_octave_error_rms_db(&grid, &even, &odd);
+    // A difference is not finite if half of the blocks are silent.
+    let of_all = |db: f64| Some(db / std::f64::consts::SQRT_2).filter(|db| db.is_finite());
+    Some(Repeatability {
+        band_rms_db: of_all(nine_db)?,
+        third_octave_rms_db: third_db.and_then(of_all),
+    })
 }
 
 /// Returns the block of each span, counted from 0. A span that shares samples with two blocks gets

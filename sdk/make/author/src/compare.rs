@@ -3,7 +3,7 @@
 
 use htex_dsp::fluctuation::Fluctuation;
 use htex_dsp::vibrotactile::Listener;
-use htex_format::{Measure, Quality};
+use htex_format::{Condition, HeldOut, Measure, Quality, Representation};
 use serde::Serialize;
 
 use crate::fluctuation::{FluctuationDifference, voice_fluctuation};
@@ -40,6 +40,10 @@ pub struct FeltDifference {
 pub struct ComparedModel {
     /// Id of the model.
     pub model: String,
+    /// The held-out error that the asset states at its condition nearest to the recording's speed
+    /// and force. `None` if it states none.
+    #[serde(flatten)]
+    pub held_out: Option<HeldOut>,
     #[serde(flatten)]
     pub difference: Difference,
     /// How the model's voice fluctuates, compared with the recording. `None` if the recording is
@@ -111,11 +115,34 @@ pub fn compare(
             None => None,
         };
         let pair = fluctuation.zip(voice.as_ref());
+        let conditions = &asset.manifest().conditions;
+        let nearest = match motion {
+            Some(motion) => nearest(representation, conditions, motion),
+            None => playable.default_condition(),
+        };
+        let left_out = representation.at.iter().find(|at| at.condition == nearest);
+        let left_out = left_out.and_then(|at| at.left_out.as_ref());
         Ok(ComparedModel {
             fluctuation: pair.map(|(a, b)| FluctuationDifference::new(a, b)),
             model: representation.model.clone(),
+            held_out: HeldOut::new(left_out, &conditions[nearest]),
             difference: Difference::new(reference, level_rms, &magnitude, quality),
         })
     });
     compared.collect()
+}
+
+/// Returns the index of the condition that counts most in what is played at a motion.
+fn nearest(stored: &Representation, conditions: &[Condition], motion: htex_play::Motion) -> usize {
+    let known = |value: Option<f64>| value.unwrap_or(0.0);
+    let points: Vec<[f64; 2]> = stored
+        .at
+        .iter()
+        .map(|at| &conditions[at.condition])
+        .map(|condition| [known(condition.speed_mm_s), known(condition.force_n)])
+        .collect();
+    let mesh = htex_play::Mesh::new(&points);
+    let weights = mesh.weights(motion.speed_mm_s, motion.force_n);
+    let most = weights.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
+    most.and_then(|(i, _)| stored.at.get(i)).map_or(0, |at| at.condition)
 }

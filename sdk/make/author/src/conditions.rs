@@ -8,6 +8,7 @@ use htex_host::FitCondition;
 use crate::blocks::block_power;
 use crate::findings::{differing, level_of};
 use crate::law::law;
+use crate::odd_and_even::odd_and_even;
 use crate::spectrum::{Averaging, SegmentSpectra};
 use crate::take::{SegmentedTake, refuse, sentence};
 use crate::{AuthorError, Exploration, TextureSpectrum, between};
@@ -20,9 +21,22 @@ pub(crate) struct ConditionSpectrum {
     /// Power of each block of time on the spectrum's grid; `None` if there are fewer than four
     /// blocks, or if the spectrum was not averaged from blocks.
     pub(crate) block_power: Option<Vec<Vec<f64>>>,
+    /// The spectra of the odd and of the even blocks of time; `None` as for `block_power`.
+    pub(crate) halves: Option<[TextureSpectrum; 2]>,
 }
 
 impl ConditionSpectrum {
+    /// A condition without blocks of time, which states the repeatability of its spectrum.
+    pub(crate) fn new(motion: Condition, spectrum: TextureSpectrum) -> Self {
+        let own = spectrum.repeatability;
+        let condition = Condition {
+            repeatability_rms_db: own.map(|of| of.band_rms_db),
+            repeatability_third_octave_rms_db: own.and_then(|of| of.third_octave_rms_db),
+            ..motion
+        };
+        Self { condition, spectrum, block_power: None, halves: None }
+    }
+
     /// Returns the speed and force of the condition, as far as they are known.
     pub(crate) fn motion(&self) -> FitCondition {
         let Condition { speed_mm_s, force_n, .. } = self.condition;
@@ -148,11 +162,13 @@ impl ConditionSpectra {
             let condition = Condition {
                 speed_mm_s: condition.speed_mm_s.map(four_digits),
                 force_n: condition.force_n.map(four_digits),
-                repeatability_rms_db: spectrum.repeatability_rms_db,
-                segments: None,
+                ..Condition::default()
             };
-            let block_power = block_power(&parts);
-            all.push(ConditionSpectrum { condition, spectrum, block_power });
+            all.push(ConditionSpectrum {
+                block_power: block_power(&parts),
+                halves: odd_and_even(&parts, averaging).map(|halves| [halves.odd, halves.even]),
+                ..ConditionSpectrum::new(condition, spectrum)
+            });
         }
         let differ = |of: fn(&TextureSpectrum, &TextureSpectrum) -> bool| {
             all.windows(2).any(|pair| of(&pair[0].spectrum, &pair[1].spectrum))

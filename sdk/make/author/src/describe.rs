@@ -75,7 +75,7 @@ fn felt_error_rms_db(representation: &Representation<'_>) -> Option<f64> {
             frequency_hz: frequency_hz.clone(),
             magnitude,
             segments: 0,
-            repeatability_rms_db: None,
+            repeatability: None,
             signal: Vec::new(),
             signal_rate_hz: 0.0,
         };

@@ -105,7 +105,7 @@ impl FeltError {
             below_difference_threshold: felt.is_below_difference_threshold(),
             below_if_sensitive: by(&Listener::sensitive()).is_below_difference_threshold(),
             within_repeatability: nine_band_db
-                .zip(recorded.repeatability_rms_db)
+                .zip(recorded.repeatability_rms_db())
                 .is_some_and(|(error, own)| error <= REPEATABILITY_BOUND * own),
         }
     }

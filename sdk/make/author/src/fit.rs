@@ -4,19 +4,21 @@
 
 use htex_base::finding::Notice;
 use htex_format::{
-    AtCondition, Measure, Quality, Representation, Steps, StoredAs, StoredField, round_within,
-    stored_unit,
+    AtCondition, LeftOut, Measure, Quality, Representation, Steps, StoredAs, StoredField,
+    round_within, stored_unit,
 };
-use htex_host::{Descriptor, Field, HostError, Instant, Kind, LoadedModel, Origin, Store};
+use htex_host::{
+    Descriptor, Field, FitCondition, HostError, Instant, Kind, LoadedModel, Origin, Store,
+};
 
-use crate::AuthorError;
 use crate::alternatives::warning;
 use crate::conditions::ConditionSpectrum;
 use crate::felt::FeltError;
-use crate::grid::{LeftOutBlock, left_out};
+use crate::grid::{LeftOutBlock, left_out, left_out_rms};
 use crate::level::{Level, stored_level};
-use crate::measure::{measure, rounding_error_db};
+use crate::measure::{agreement, measure, read_spectrum, rounding_error_db};
 use crate::request::ModelRequest;
+use crate::{AuthorError, TextureSpectrum};
 
 /// The models of an asset, fitted at all conditions.
 #[derive(Default)]
@@ -94,20 +96,36 @@ pub(crate) struct ConditionFit {
     pub(crate) fit_ms: f64,
 }
 
-/// Fits a model with these options at one condition.
-pub(crate) fn fit_condition(
+/// Fits a model with these options to a spectrum at a motion.
+pub(crate) fn fit_spectrum(
+    model: &LoadedModel,
+    options: &[f64],
+    spectrum: &TextureSpectrum,
+    motion: FitCondition,
+    level: Level,
+) -> Result<ConditionFit, AuthorError> {
+    let start = Instant::now();
+    let fit = model.fit(&spectrum.fit_input(options, motion))?;
+    let fit_ms = start.elapsed().as_secs_f64() * 1e3;
+    let stored =
+        round_within(&stored_fields(model.descriptor()), model.descriptor(), &fit.parameters)?;
+    let level_rms = stored_level(model, &fit, &stored, spectrum.as_ref(), level)?;
+    Ok(ConditionFit { fitted: fit.parameters, stored, level_rms, fit_ms })
+}
+
+/// Returns the held-out error of a model at one condition: the model is fitted to the odd blocks of
+/// time and compared with the even blocks. `None` if there are too few blocks, or if the model
+/// cannot be fitted to half of them.
+fn left_out_half(
     model: &LoadedModel,
     options: &[f64],
     one: &ConditionSpectrum,
     level: Level,
-) -> Result<ConditionFit, AuthorError> {
-    let start = Instant::now();
-    let fit = model.fit(&one.spectrum.fit_input(options, one.motion()))?;
-    let fit_ms = start.elapsed().as_secs_f64() * 1e3;
-    let stored =
-        round_within(&stored_fields(model.descriptor()), model.descriptor(), &fit.parameters)?;
-    let level_rms = stored_level(model, &fit, &stored, one.spectrum.as_ref(), level)?;
-    Ok(ConditionFit { fitted: fit.parameters, stored, level_rms, fit_ms })
+) -> Option<LeftOut> {
+    let [odd, even] = one.halves.as_ref()?;
+    let fit = fit_spectrum(model, options, odd, one.motion(), level).ok()?;
+    let magnitude = read_spectrum(model, &fit.stored, fit.level_rms, even.as_ref()).ok()?;
+    left_out_rms(&[agreement(even.as_ref(), &magnitude).measures])
 }
 
 fn fit_model(
@@ -118,9 +136,12 @@ fn fit_model(
 ) -> Result<FittedModel, AuthorError> {
     let model = &choice.model;
     let (mut at, mut parameters, mut felt, mut fit_ms) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
+    let fit_at = |one: &ConditionSpectrum| {
+        fit_spectrum(model, &choice.options, &one.spectrum, one.motion(), level)
+    };
     for (condition, one) in all.iter().enumerate() {
         let reference = one.spectrum.as_ref();
-        let fit = fit_condition(model, &choice.options, one, level)?;
+        let fit = fit_at(one)?;
         let (magnitude, measured) = measure(model, &fit.stored, fit.level_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.fitted, &fit.stored, reference)?;
         // Nothing was recorded at a computed condition, so there is nothing to compare with.
@@ -131,13 +152,13 @@ fn fit_model(
         felt.push(quality.as_ref().map(|quality| {
             FeltError::new(&one.spectrum, &magnitude, quality.get(Measure::NineBand))
         }));
-        at.push(AtCondition { condition, level_rms: fit.level_rms, quality, left_out: None });
+        let left_out = left_out_half(model, &choice.options, one, level);
+        at.push(AtCondition { condition, level_rms: fit.level_rms, quality, left_out });
         parameters.push(fit.stored);
         fit_ms += fit.fit_ms;
     }
-    let fit = |one: &ConditionSpectrum| fit_condition(model, &choice.options, one, level);
-    for (at, error) in at.iter_mut().zip(left_out(model, all.len(), blocks, fit)) {
-        at.left_out = error;
+    for (at, error) in at.iter_mut().zip(left_out(model, all.len(), blocks, fit_at)) {
+        at.left_out = at.left_out.or(error);
     }
     let representation = representation(model, at);
     Ok(FittedModel { representation, parameters, felt, fit_ms })

@@ -435,11 +435,11 @@ mod tests {
                 frequency_hz,
                 magnitude,
                 segments: 1,
-                repeatability_rms_db: None,
+                repeatability: None,
                 signal: Vec::new(),
                 signal_rate_hz: 5_000.0,
             };
-            ConditionSpectrum { condition, spectrum, block_power: None }
+            ConditionSpectrum::new(condition, spectrum)
         });
         law(&all, Contact::Finger).frequency_speed.estimate
     }

@@ -81,6 +81,7 @@ mod texture_difference;
 pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
+pub use blocks::Repeatability;
 pub use coding::Coding;
 pub use compare::{ComparedModel, Difference, FeltDifference, compare};
 pub use conditions::RecordingFinding;

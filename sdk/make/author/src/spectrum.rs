@@ -11,7 +11,7 @@ use htex_recording::{hertz, raised};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::blocks::{Span, repeatability_rms_db};
+use crate::blocks::{Repeatability, Span, repeatability};
 use crate::segments::{SegmentChoice, Segments, choose_segments, segment_len};
 use crate::{AuthorError, Recording, SetupResponse};
 
@@ -111,14 +111,12 @@ pub struct TextureSpectrum {
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability, decibels: the difference to expect between the spectra of two such
-    /// recordings. This is the RMS over nine bands of the difference between the spectra of odd and
-    /// even blocks of time, divided by √2.
+    /// Repeatability: the difference to expect between the spectra of two such recordings.
     ///
     /// The read parts of the recordings are cut into blocks of 0.2 to 1 s, which share no sample. A
     /// segment in the middle of a sweep is one block. `None` if there are fewer than four blocks,
     /// or if half of the blocks are silent.
-    pub repeatability_rms_db: Option<f64>,
+    pub repeatability: Option<Repeatability>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
     /// Sample rate of `signal`, hertz.
@@ -138,6 +136,11 @@ impl TextureSpectrum {
     /// the texture's law from two recorded spectra.
     pub fn is_recorded(&self) -> bool {
         self.segments > 0
+    }
+
+    /// Returns the repeatability in nine bands, decibels.
+    pub fn repeatability_rms_db(&self) -> Option<f64> {
+        self.repeatability.map(|of| of.band_rms_db)
     }
 
     /// Averages the segment spectra of one or more recordings of one texture at one condition.
@@ -175,7 +178,7 @@ impl TextureSpectrum {
             band,
             magnitude: average(all, frequency_hz.len(), averaging),
             segments: all.len(),
-            repeatability_rms_db: repeatability_rms_db(band, all, spans, averaging),
+            repeatability: repeatability(band, all, spans, averaging),
             frequency_hz,
             signal,
             signal_rate_hz,

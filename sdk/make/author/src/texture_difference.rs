@@ -176,7 +176,7 @@ impl DifferenceAt {
                 frequency_hz,
                 magnitude,
                 segments: 0,
-                repeatability_rms_db: None,
+                repeatability: None,
                 signal: Vec::new(),
                 signal_rate_hz: 0.0,
             })

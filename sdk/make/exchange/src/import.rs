@@ -263,10 +263,15 @@ pub fn fit_signals(
         options.insert("full-scale".to_owned(), full_scale.to_string());
     }
     let mut fitted = fit_asset(takes, &request)?;
-    for condition in &mut fitted.asset.manifest.conditions {
-        // Repeated samples agree with themselves, so a repeatability would look like a perfect
-        // recording.
+    // Repeated samples agree with themselves, so repeatability and held-out error would be those of
+    // a perfect recording.
+    let manifest = &mut fitted.asset.manifest;
+    for condition in &mut manifest.conditions {
         condition.repeatability_rms_db = None;
+        condition.repeatability_third_octave_rms_db = None;
+    }
+    for at in manifest.representations.iter_mut().flat_map(|r| &mut r.at) {
+        at.left_out = None;
     }
     Ok(fitted)
 }

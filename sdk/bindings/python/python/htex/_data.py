@@ -27,6 +27,8 @@ class Condition:
     repeatability_rms_db: float | None = None
     """How well the recording repeats itself, decibels: the difference between its odd and even time
     blocks, as an RMS over nine frequency bands, divided by √2."""
+    repeatability_third_octave_rms_db: float | None = None
+    """The same over third octaves, decibels."""
     segments: int | None = None
     """Number of averaged segments; 0 for a computed condition. ``None`` if the asset does not state
     it."""

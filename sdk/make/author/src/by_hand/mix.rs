@@ -136,7 +136,8 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
             return Err("the speed or the force of one alone is known; edit or fit it".to_owned());
         }
         if !all.iter().any(|other| is_same(other, condition)) {
-            all.push(Condition { repeatability_rms_db: None, segments: None, ..*condition });
+            let Condition { speed_mm_s, force_n, .. } = *condition;
+            all.push(Condition { speed_mm_s, force_n, ..Condition::default() });
         }
     }
     Ok(all)

@@ -38,16 +38,18 @@ pub(crate) fn left_out(
             }
         }
     }
-    let of_blocks = |all: &Vec<Measures>| {
-        let over = |measure: Measure| {
-            let of_block = all.iter().filter_map(|measures| measures.get(measure));
-            let of_block: Vec<f64> = of_block.filter(|error| error.is_finite()).collect();
-            (!of_block.is_empty()).then(|| rms(&of_block))
-        };
-        let measures = Measures::new(over).only(LeftOut::measures());
-        over(Measure::NineBand).map(|_| LeftOut(measures))
+    errors.iter().map(|of_blocks| left_out_rms(of_blocks)).collect()
+}
+
+/// Returns the RMS of the errors on several blocks of time; `None` if no block has an error.
+pub(crate) fn left_out_rms(blocks: &[Measures]) -> Option<LeftOut> {
+    let over = |measure: Measure| {
+        let of_block = blocks.iter().filter_map(|measures| measures.get(measure));
+        let of_block: Vec<f64> = of_block.filter(|error| error.is_finite()).collect();
+        (!of_block.is_empty()).then(|| rms(&of_block))
     };
-    errors.iter().map(of_blocks).collect()
+    let measures = Measures::new(over).only(LeftOut::measures());
+    over(Measure::NineBand).map(|_| LeftOut(measures))
 }
 
 /// The conditions of a grid that was fitted without a block of time, interpolated as a player does

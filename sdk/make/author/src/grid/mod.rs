@@ -31,7 +31,7 @@ use htex_base::finding::Findings;
 use htex_format::{Condition, Source};
 
 pub(crate) use held_out::LeftOutBlock;
-pub(crate) use leave_out::left_out;
+pub(crate) use leave_out::{left_out, left_out_rms};
 pub use report::{CellStatus, GridCell, GridReport};
 pub use request::Grid;
 
@@ -102,12 +102,9 @@ impl GridSpectra {
                 continue;
             };
             report.add_fitted(cell, &spectrum, all.len());
-            let condition = Condition {
-                repeatability_rms_db: spectrum.repeatability_rms_db,
-                segments: Some(spectrum.segments as u64),
-                ..condition(cell)
-            };
-            all.push(ConditionSpectrum { condition, spectrum, block_power: None });
+            let condition =
+                Condition { segments: Some(spectrum.segments as u64), ..condition(cell) };
+            all.push(ConditionSpectrum::new(condition, spectrum));
         }
         if all.is_empty() {
             return Err(AuthorError::GridEmpty {

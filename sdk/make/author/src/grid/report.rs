@@ -103,7 +103,7 @@ impl GridReport {
             if cell.borrowed.is_empty() { CellStatus::Fitted } else { CellStatus::Widened };
         self.cells.push(GridCell {
             averaged: spectrum.segments,
-            repeatability_rms_db: spectrum.repeatability_rms_db,
+            repeatability_rms_db: spectrum.repeatability_rms_db(),
             condition: Some(condition),
             ..grid_cell(cell, status)
         });

@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
                 force_n: median(1).map(four_digits),
                 ..Condition::default()
             };
-            let one = vec![ConditionSpectrum { condition, spectrum, block_power: None }];
+            let one = vec![ConditionSpectrum::new(condition, spectrum)];
             let played = PlayedSpectra::new(one, self.kind.contact);
             match played {
                 Some(played) => errors.extend(errors_db(&played, held)),
@@ -238,11 +238,7 @@ impl CellSpectra {
     fn conditions(&self, spectra: &[Option<TextureSpectrum>]) -> Vec<ConditionSpectrum> {
         let both = self.cells.iter().zip(spectra);
         let with = both.filter_map(|(cell, spectrum)| {
-            Some(ConditionSpectrum {
-                condition: condition(cell),
-                spectrum: spectrum.clone()?,
-                block_power: None,
-            })
+            Some(ConditionSpectrum::new(condition(cell), spectrum.clone()?))
         });
         with.collect()
     }

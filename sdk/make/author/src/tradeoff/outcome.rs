@@ -196,7 +196,7 @@ impl RecordingSummary {
         Self {
             name: subject.name.clone(),
             simulated: subject.simulated,
-            repeatability_rms_db: subject.spectrum.repeatability_rms_db,
+            repeatability_rms_db: subject.spectrum.repeatability_rms_db(),
             blocks: held_out.map(|h| h.halves.blocks),
             block_s: held_out.map(|h| h.halves.block_s),
             floor_db: held_out.map(|h| h.floor_db),

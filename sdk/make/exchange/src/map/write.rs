@@ -100,7 +100,7 @@ fn export_fit(
         frequency_hz,
         magnitude,
         segments: 0,
-        repeatability_rms_db: None,
+        repeatability: None,
         signal: Vec::new(),
         signal_rate_hz: 0.0,
     };

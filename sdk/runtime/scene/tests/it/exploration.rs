@@ -221,8 +221,7 @@ fn forces_within_tolerance_count_as_one() {
     let condition = |speed: f64, force: f64| Condition {
         speed_mm_s: Some(speed),
         force_n: Some(force),
-        repeatability_rms_db: None,
-        segments: None,
+        ..Condition::default()
     };
     let conditions = [condition(40.0, 0.4069), condition(80.0, 0.4061), condition(160.0, 0.4014)];
     let at = [0, 1, 2].map(|condition| AtCondition {

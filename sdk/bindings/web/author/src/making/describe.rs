@@ -81,6 +81,6 @@ pub(crate) fn spectrum(spectrum: &TextureSpectrum) -> DescribedSpectrum<'_> {
         unit: spectrum.quantity.unit(),
         band_hz: [spectrum.band.low_hz, spectrum.band.high_hz],
         segments: spectrum.segments,
-        repeatability_rms_db: spectrum.repeatability_rms_db,
+        repeatability_rms_db: spectrum.repeatability_rms_db(),
     }
 }

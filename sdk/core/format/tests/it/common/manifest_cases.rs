@@ -80,6 +80,10 @@ pub(super) fn manifests() -> Vec<Named> {
         ("source_invalid", |m| m["provenance"]["recordings"][0]["rate_hz"] = json!(0)),
         ("source_path", |m| m["provenance"]["recordings"][0]["file"] = json!("/home/me/a.csv")),
         ("conditions_empty", |m| m["conditions"] = json!([])),
+        ("condition_invalid_third_octaves", |m| {
+            m["htex"] = json!("1.1");
+            m["conditions"][0]["repeatability_third_octave_rms_db"] = json!(-0.1);
+        }),
         ("condition_invalid", |m| m["conditions"][0]["speed_mm_s"] = json!(-40)),
         ("condition_duplicate", |m| m["conditions"] = json!([{}, {}])),
         ("condition_duplicate_absent", |m| {

@@ -20,7 +20,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
     let (representations, parameters) = fitted.into_iter().unzip();
     Asset {
         manifest: Manifest {
-            htex: VERSION.to_owned(),
+            htex: "1.0".to_owned(),
             name: "Cotton, coarse weave".to_owned(),
             license: Some("CC-BY-4.0".to_owned()),
             author: Some("Haptics Laboratory, Example University".to_owned()),
@@ -66,7 +66,7 @@ fn condition(i: usize) -> Condition {
         speed_mm_s: Some(40.0 + 20.0 * i as f64),
         force_n: Some(0.5),
         repeatability_rms_db: Some(0.8137),
-        segments: None,
+        ..Condition::default()
     }
 }
 

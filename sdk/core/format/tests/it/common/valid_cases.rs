@@ -67,6 +67,17 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_version_1_1",
+            with_manifest(|m| {
+                m["htex"] = json!("1.1");
+                m["conditions"][0]["repeatability_third_octave_rms_db"] = json!(0.9211);
+                m["representations"][0]["at"][0]["left_out"] = json!({
+                    "band_error_rms_db": 1.1517,
+                    "third_octave_error_rms_db": 1.4038,
+                });
+            }),
+        ),
+        (
             "valid_mixed",
             with_manifest(|m| {
                 m["provenance"]["made"] = json!({

@@ -66,12 +66,8 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
         parameters: format!("parameters/{model}.bin"),
     };
     let values = |model: &&str| vec![fields(model).iter().map(|(_, value)| *value).collect()];
-    let condition = Condition {
-        speed_mm_s: Some(80.0),
-        force_n: Some(0.4),
-        repeatability_rms_db: None,
-        segments: None,
-    };
+    let condition =
+        Condition { speed_mm_s: Some(80.0), force_n: Some(0.4), ..Condition::default() };
     let asset = htex_format::Asset {
         manifest: Manifest {
             htex: "1.0".to_owned(),

@@ -296,6 +296,20 @@ mod tests {
     }
 
     #[test]
+    fn the_bytes_are_those_of_the_specification() {
+        let conditions = [vec![vec![40, 39, 39, 40, 43]], vec![vec![41, 39, 40, 40, 43]]];
+        let bytes = [0xFF, 0xFF, 0xFB, 0x76, 0x57, 0x42, 0xB5];
+        assert_eq!(encode(&[true], &conditions), bytes);
+        assert_eq!(decoded(&[true], 2, &bytes).unwrap(), conditions);
+        assert!(include_str!("../../../../spec/htex-1.md").contains("`FF FF FB 76 57 42 B5`"));
+        // Nothing is no bytes, and a step can have any size.
+        assert_eq!(encode(&[], &[vec![], vec![]]), [0u8; 0]);
+        let jumps =
+            [vec![vec![0, 255, 0, 128, 1]], vec![vec![255, 0, 255, 127, 254]], vec![vec![]]];
+        assert_eq!(decoded(&[true], 3, &encode(&[true], &jumps)).unwrap(), jumps);
+    }
+
+    #[test]
     fn a_limit_holds_for_a_few_bytes_that_stand_for_many_numbers() {
         let flat = vec![vec![vec![7; 1000]]; 100];
         let bytes = encode(&[true], &flat);

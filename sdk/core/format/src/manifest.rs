@@ -369,7 +369,7 @@ pub enum StoredAs {
     /// differences take fewer bits.
     Packed(Steps),
     /// Unsigned 8-bit integers `q`, predicted from the condition before and stored in a range code.
-    /// Only assets that require the extension [`CODED`] have this storage.
+    /// Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
     Coded(Steps),
 }
 

@@ -133,7 +133,7 @@ fn rows_of(
             _ => return Err((pointer, "a column is an array or an object".to_owned())),
         };
         if values.len() != places.len() {
-            let message = format!("{} values for {} rows", values.len(), places.len());
+            let message = format!("there are {} values for {} rows", values.len(), places.len());
             return Err((pointer, message));
         }
         for (place, value) in places.into_iter().zip(values) {

@@ -41,12 +41,15 @@ impl Coding {
         match self {
             Self::Coded => asset.coded(),
             Self::Plain => asset.plain(),
-            Self::Auto if asset.manifest.conditions.len() <= MOST_PLAIN => asset,
             Self::Auto => {
-                let coded = asset.clone().coded();
-                match (asset.to_bytes(), coded.to_bytes()) {
-                    (Ok(plain), Ok(fewer)) if fewer.len() < plain.len() => coded,
-                    _ => asset,
+                let plain = asset.plain();
+                if plain.manifest.conditions.len() <= MOST_PLAIN {
+                    return plain;
+                }
+                let coded = plain.clone().coded();
+                match (plain.to_bytes(), coded.to_bytes()) {
+                    (Ok(bytes), Ok(fewer)) if fewer.len() < bytes.len() => coded,
+                    _ => plain,
                 }
             }
         }

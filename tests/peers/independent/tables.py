@@ -32,10 +32,16 @@ def refuse(pointer: str, why: str):
 
 def rows_of_table(table: dict, pointer: str, left: list[int]) -> list[dict]:
     columns = columns_of(table, pointer)
-    lengths = [len(columns[key]) for key in in_order(columns) if isinstance(columns[key], list)]
-    if not lengths:
-        refuse(pointer, "no column is an array")
-    return rows_of(columns, lengths[0], pointer, left)
+    full = [values for key in in_order(columns) if (values := full_column(columns[key])) is not None]
+    if not full:
+        refuse(pointer, "no column has a value for each row")
+    return rows_of(columns, len(full[0]), pointer, left)
+
+
+def full_column(column) -> list | None:
+    if isinstance(column, dict):
+        column = None if "rows" in column else column.get("values")
+    return column if isinstance(column, list) else None
 
 
 def in_order(columns: dict) -> list[str]:
@@ -62,9 +68,7 @@ def rows_of(columns: dict, count: int, pointer: str, left: list[int]) -> list[di
             if "rows" in column:
                 places = indices(column["rows"], count, here + "/rows")
             if "values" in column:
-                values = column["values"]
-                if not isinstance(values, list):
-                    refuse(here, "no array")
+                values = divided_values(column, here)
             else:
                 values = rows_of(columns_of(column, here), len(places), here, left)
         else:
@@ -74,6 +78,26 @@ def rows_of(columns: dict, count: int, pointer: str, left: list[int]) -> list[di
         for place, value in zip(places, values):
             rows[place][key] = value
     return rows
+
+
+def divided_values(column: dict, pointer: str) -> list:
+    values = column["values"]
+    if not isinstance(values, list):
+        refuse(pointer + "/values", "no array")
+    if "per" not in column:
+        return values
+    per = column["per"]
+    if not isinstance(per, float) or not 1 <= per <= 1e6:
+        refuse(pointer + "/per", "no number from 1 to 1000000")
+
+    def divided(value):
+        if isinstance(value, list):
+            return [divided(inner) for inner in value]
+        if not isinstance(value, float):
+            refuse(pointer + "/values", "neither a number nor an array of numbers")
+        return float(value) / per
+
+    return [divided(value) for value in values]
 
 
 def indices(rows, count: int, pointer: str) -> list[int]:

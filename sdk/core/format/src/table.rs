@@ -17,6 +17,12 @@ const CONDITION: &str = "condition";
 /// a row takes 630 bytes or more, and in the file as few as two.
 const MOST_ROWS: usize = 1 << 18;
 
+/// Largest number by which the values of a column are divided.
+const MOST_PER: f64 = 1e6;
+/// Numbers that a writer tries for this.
+#[cfg(feature = "write")]
+const PER: [f64; 2] = [100.0, 10_000.0];
+
 /// Why a table stands for no array: a JSON pointer, and what is wrong there.
 pub(crate) type TableError = (String, String);
 
@@ -83,13 +89,23 @@ fn expand(value: &mut Value, pointer: &str, left: &mut usize) -> Result<(), Tabl
     let table = std::mem::take(table);
     let columns = columns_of(&table, pointer)?;
     // Each row has a value in the file, so there are no more rows than the file has values.
-    let Some(rows) = columns.values().find_map(|column| Some(column.as_array()?.len())) else {
-        let message = "no column is an array with a value for each row; write an array of objects";
+    let Some(rows) = columns.values().find_map(full_column) else {
+        let message = "no column has a value for each row; write an array of objects";
         return Err((pointer.to_owned(), message.to_owned()));
     };
+    let rows = rows.len();
     let rows = rows_of(columns, rows, pointer, left)?;
     *value = Value::Array(rows.into_iter().map(Value::Object).collect());
     Ok(())
+}
+
+/// Returns the values of a column that has one for each row.
+fn full_column(column: &Value) -> Option<&Vec<Value>> {
+    match column {
+        Value::Object(part) if part.contains_key("rows") => None,
+        Value::Object(part) => part.get("values")?.as_array(),
+        _ => column.as_array(),
+    }
 }
 
 fn columns_of<'a>(
@@ -120,8 +136,7 @@ fn rows_of(
             Value::Object(part) => {
                 let places = places(part, count, &pointer)?;
                 let values = match part.get("values") {
-                    Some(Value::Array(values)) => values.clone(),
-                    Some(_) => return Err((pointer, "`values` is no array".to_owned())),
+                    Some(values) => divided_values(values, part.get("per"), &pointer)?,
                     None => {
                         let rows =
                             rows_of(columns_of(part, &pointer)?, places.len(), &pointer, left)?;
@@ -141,6 +156,34 @@ fn rows_of(
         }
     }
     Ok(rows)
+}
+
+/// Returns the values of a column, each divided by `per` if it is given.
+fn divided_values(
+    values: &Value,
+    per: Option<&Value>,
+    pointer: &str,
+) -> Result<Vec<Value>, TableError> {
+    let Value::Array(values) = values else {
+        return Err((format!("{pointer}/values"), "it is no array".to_owned()));
+    };
+    let Some(per) = per else {
+        return Ok(values.clone());
+    };
+    let Some(per) = per.as_f64().filter(|per| (1.0..=MOST_PER).contains(per)) else {
+        return Err((format!("{pointer}/per"), format!("it is no number from 1 to {MOST_PER}")));
+    };
+    let divided = values.iter().map(|value| divided(value, per)).collect::<Option<_>>();
+    divided.ok_or_else(|| {
+        (format!("{pointer}/values"), "with `per`, values are numbers or arrays of them".to_owned())
+    })
+}
+
+fn divided(value: &Value, per: f64) -> Option<Value> {
+    match value {
+        Value::Array(values) => values.iter().map(|value| divided(value, per)).collect(),
+        _ => Some((value.as_f64()? / per).into()),
+    }
 }
 
 /// Returns the rows that have a value in this column: those in `rows`, or all.
@@ -175,7 +218,7 @@ fn tabulate(array: &mut Value) {
     };
     let rows: Option<Vec<&Map<String, Value>>> = rows.iter().map(Value::as_object).collect();
     let columns = columns(&rows.unwrap_or_default());
-    if columns.values().any(Value::is_array) {
+    if columns.values().any(|column| full_column(column).is_some()) {
         *array = Value::Object(Map::from_iter([("columns".to_owned(), columns.into())]));
     }
 }
@@ -192,18 +235,48 @@ fn column(key: &str, rows: &[&Map<String, Value>]) -> Value {
     let (places, values): (Vec<usize>, Vec<&Value>) = there.unzip();
     let is_full = places.len() == rows.len();
     let objects: Option<Vec<_>> = values.iter().map(|value| value.as_object()).collect();
-    let (name, content) = match objects {
-        Some(objects) => ("columns", columns(&objects).into()),
-        None => ("values", values.into_iter().cloned().collect::<Value>()),
-    };
-    if is_full && content.is_array() {
-        return content;
+    let mut part = Map::new();
+    if let Some(objects) = objects {
+        part.insert("columns".to_owned(), columns(&objects).into());
+    } else {
+        let whole = |per: &f64| {
+            let values = values.iter().map(|value| multiplied(value, *per));
+            Some((*per, values.collect::<Option<Value>>()?))
+        };
+        match PER.iter().find_map(whole) {
+            Some((per, values)) => {
+                part.insert("per".to_owned(), (per as u64).into());
+                part.insert("values".to_owned(), values);
+            }
+            None if is_full => return values.into_iter().cloned().collect(),
+            None => {
+                part.insert("values".to_owned(), values.into_iter().cloned().collect());
+            }
+        }
     }
-    let mut part = Map::from_iter([(name.to_owned(), content)]);
     if !is_full {
         part.insert("rows".to_owned(), places.into());
     }
     Value::Object(part)
+}
+
+/// Returns a number with a point, or an array of them, multiplied by `per`. Returns `None` if a
+/// product is not whole, or if dividing it by `per` would not give the number again.
+#[cfg(feature = "write")]
+fn multiplied(value: &Value, per: f64) -> Option<Value> {
+    match value {
+        Value::Array(values) => values.iter().map(|value| multiplied(value, per)).collect(),
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64()?;
+            let whole = (number * per).round();
+            // Up to 2^53, where integers are exact.
+            let is_exact = whole.abs() <= 9_007_199_254_740_992.0;
+            // Compared by bits, because a negative zero would become 0.
+            let is_same = (whole as i64) as f64 / per;
+            (is_exact && is_same.to_bits() == number.to_bits()).then(|| (whole as i64).into())
+        }
+        _ => None,
+    }
 }
 
 #[cfg(all(test, feature = "write"))]
@@ -224,18 +297,22 @@ mod tests {
     fn a_table_is_that_of_the_specification() {
         let conditions = json!([{ "speed_mm_s": 20 }, { "speed_mm_s": 40, "force_n": 0.5 }]);
         let at = json!([
-            { "condition": 0, "level_rms": 1.5, "quality": { "x": 1, "y": [1, 2] } },
+            { "condition": 0, "level_rms": 1.23456, "quality": { "x": 1.5, "y": [1.25, 2.0], "z": [1] } },
             { "condition": 1, "level_rms": 2.5 }
         ]);
         let mut written = manifest(&conditions, &at);
         write_tables(&mut written);
         let expected = manifest(
             &json!({ "columns": {
-                "force_n": { "rows": [1], "values": [0.5] }, "speed_mm_s": [20, 40]
+                "force_n": { "per": 100, "rows": [1], "values": [50] }, "speed_mm_s": [20, 40]
             } }),
             &json!({ "columns": {
-                "level_rms": [1.5, 2.5],
-                "quality": { "columns": { "x": [1], "y": [[1, 2]] }, "rows": [0] }
+                "level_rms": [1.23456, 2.5],
+                "quality": { "columns": {
+                    "x": { "per": 100, "values": [150] },
+                    "y": { "per": 100, "values": [[125, 200]] },
+                    "z": [[1]]
+                }, "rows": [0] }
             } }),
         );
         assert_eq!(written, expected);
@@ -254,7 +331,12 @@ mod tests {
             (json!({ "columns": { "a": [1, 2], "b": [1] } }), "/columns/b"),
             (json!({ "columns": { "a": [1, 2], "b": 1 } }), "/columns/b"),
             (json!({ "columns": { "a": [1, 2], "b": {} } }), "/columns/b"),
-            (json!({ "columns": { "a": [1, 2], "b": { "values": 1 } } }), "/columns/b"),
+            (json!({ "columns": { "a": { "columns": { "b": [1] } } } }), ""),
+            (json!({ "columns": { "a": { "values": [1, 2] }, "b": [1] } }), "/columns/b"),
+            (json!({ "columns": { "a": [1, 2], "b": { "values": 1 } } }), "/columns/b/values"),
+            (json!({ "columns": { "a": { "per": 0.5, "values": [1] } } }), "/columns/a/per"),
+            (json!({ "columns": { "a": { "per": "1", "values": [1] } } }), "/columns/a/per"),
+            (json!({ "columns": { "a": { "per": 2, "values": [[true]] } } }), "/columns/a/values"),
             (json!({ "columns": { "a": [1, 2], "b~": { "values": [1] } } }), "/columns/b~0"),
             (
                 json!({ "columns": { "a": [1], "b": { "columns": { "c": [] } } } }),
@@ -301,7 +383,8 @@ mod tests {
             ),
         ) {
             let row = |(a, b, c, number): &(bool, bool, bool, u32)| {
-                let mut row = json!({ "condition": number % 7, "level_rms": number });
+                let level = f64::from(*number) / if *c { 100.0 } else { 10_000.0 };
+                let mut row = json!({ "condition": number % 7, "level_rms": level });
                 if *a {
                     row["a"] = json!([number, 1]);
                 }

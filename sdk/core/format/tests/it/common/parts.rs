@@ -51,7 +51,7 @@ pub(super) fn with_coded(block: &[u8], change: impl Fn(&mut Value)) -> Vec<u8> {
     let mut manifest = manifest();
     manifest["htex"] = json!("1.1");
     manifest["extensions_required"] = json!(["org.htex.coded/1"]);
-    manifest["conditions"] = json!({ "columns": { "force_n": { "rows": [1], "values": [0.5] }, "speed_mm_s": [40, 80] } });
+    manifest["conditions"] = json!({ "columns": { "force_n": { "per": 100, "rows": [1], "values": [50] }, "speed_mm_s": [40, 80] } });
     let representation = &mut manifest["representations"][0];
     representation["model"] = json!("org.example.steps");
     representation["fields"] =

@@ -59,6 +59,10 @@ pub(super) fn texts() -> Vec<Named> {
             with_coded(CODE, |m| m["representations"][0]["at"]["columns"]["quality"] = json!([{}])),
         ),
         (
+            "json_type_table_per",
+            with_coded(CODE, |m| m["conditions"]["columns"]["force_n"]["per"] = json!(0)),
+        ),
+        (
             "json_type_table_in_plain",
             with_coded(CODE, |m| {
                 plain(m);

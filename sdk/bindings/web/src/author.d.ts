@@ -182,7 +182,7 @@ export interface FitSettings extends ReadingSettings, Metadata {
    * Default: `auto`, which codes a texture of more than eight conditions if its file becomes
    * smaller.
    */
-  coding?: "auto" | "coded" | "plain";
+  storage?: "auto" | "coded" | "plain";
   /**
    * Divides recordings of a free motion into conditions. The grid lines are speeds (mm/s) and
    * forces (N).

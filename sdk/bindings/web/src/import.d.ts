@@ -104,7 +104,7 @@ export interface ImportSettings extends Metadata {
   /** Store the spectrum of the signal in the texture. */
   keep_reference?: boolean;
   /** Whether the texture is coded: fewer bytes, but readers of version 1.0 refuse it. */
-  coding?: "auto" | "coded" | "plain";
+  storage?: "auto" | "coded" | "plain";
 }
 
 export interface ImportReport {

@@ -43,7 +43,7 @@ const KEYS: [(&str, &str); 12] = [
     ("options", "option"),
     ("level", "level"),
     ("keep_reference", "keep_reference"),
-    ("coding", "coding"),
+    ("storage", "storage"),
     ("grid", "grid"),
 ];
 /// Gates that apply to every texture. All other gates judge recordings and fits.

@@ -118,7 +118,7 @@ const FITTED: &[&str] = &[
     "option",
     "level",
     "keep_reference",
-    "coding",
+    "storage",
 ];
 /// Settings of image imports.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];

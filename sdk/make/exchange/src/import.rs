@@ -145,7 +145,7 @@ impl Import<'_> {
             ("option", !fit.options.is_empty()),
             ("level", fit.level.is_some_and(|l| l != Level::default())),
             ("keep_reference", fit.keep_reference == Some(true)),
-            ("coding", fit.coding.is_some_and(|c| c != Coding::default())),
+            ("storage", fit.storage.is_some_and(|c| c != Coding::default())),
             ("grid", fit.grid.is_some()),
         ];
         let given = all.into_iter().filter(|(_, is_given)| *is_given);

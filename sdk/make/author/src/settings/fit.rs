@@ -90,7 +90,7 @@ settings! {
                     version 1.0 of the format refuse. `auto`: only with more than eight \
                     conditions, and only if the file becomes smaller [default: auto]"
         ))]
-        pub coding: Option<Coding> = "coding",
+        pub storage: Option<Coding> = "storage",
 
         /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
         /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
@@ -294,7 +294,7 @@ impl FitSettings {
             strict: self.strict.unwrap_or_default(),
             grid: grid.transpose()?,
             keep_reference: self.keep_reference.unwrap_or_default(),
-            coding: self.coding.unwrap_or_default(),
+            coding: self.storage.unwrap_or_default(),
             recorded_options: recorded,
             tool: tool.to_owned(),
             ..AssetRequest::default()

@@ -24,9 +24,8 @@ impl Asset {
         if !self.manifest.is_coded() {
             self.manifest.extensions_required.push(CODED.to_owned());
         }
-        for (representation, flats) in
-            self.manifest.representations.iter_mut().zip(&self.parameters)
-        {
+        for (i, representation) in self.manifest.representations.iter_mut().enumerate() {
+            let flats = self.parameters.get(i).map_or(&[][..], Vec::as_slice);
             let whole = representation.fields.clone();
             for (i, field) in representation.fields.iter_mut().enumerate() {
                 field.store = match field.store {

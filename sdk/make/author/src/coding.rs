@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// has few kilobytes, so it is worth more that every reader can open it.
 const MOST_PLAIN: usize = 8;
 
-/// Whether an asset is coded ([`Asset::coded`]).
+/// Whether an asset is coded: the same texture in fewer bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Coding {

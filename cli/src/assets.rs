@@ -83,10 +83,7 @@ impl AssetSummary {
                 .zip(&representation.at)
                 .map(|(set, at)| AtSummary {
                     parameters: parameters_by_name(&representation.fields, set),
-                    held_out: HeldOut::new(
-                        at.left_out.as_ref(),
-                        &manifest.conditions[at.condition],
-                    ),
+                    held_out: manifest.held_out(at),
                     felt: None,
                 })
                 .collect(),
@@ -294,7 +291,7 @@ pub(crate) fn repeats(db: f64) -> String {
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
     match condition.segments {
-        Some(0) => text += ", computed between recorded speeds",
+        Some(0) => text += ", computed",
         Some(segments) => {
             let _ = write!(text, ", {segments} segments");
         }

@@ -166,7 +166,8 @@ impl Fit {
         settings.add_options(&self.option)?;
         let stem = self.output.file_stem();
         let name = stem.map(|s| s.to_string_lossy()).unwrap_or_default();
-        Ok(settings.request(registry, &self.reading.settings, &name, &tool())?)
+        let request = settings.request(registry, &self.reading.settings, &name, &tool())?;
+        Ok(request.with_law_of(&self.metadata))
     }
 }
 

@@ -252,7 +252,8 @@ def stated(manifest: dict) -> tuple:
     """Tags, models, conditions and law, as an entry states them."""
     ranges = []
     for key in ("speed_mm_s", "force_n"):
-        known = [abs(condition[key]) for condition in manifest["conditions"] if key in condition]
+        recorded = [condition for condition in manifest["conditions"] if condition.get("segments") != 0]
+        known = [abs(condition[key]) for condition in recorded if key in condition]
         ranges.append((min(known), max(known)) if known else None)
     law = manifest.get("law")
     names = ("frequency_speed", "level_speed", "level_force")

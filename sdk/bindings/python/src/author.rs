@@ -148,7 +148,7 @@ impl Fit {
         let settings = FitSettings { strict: Some(reading.strict()), ..parsed(&self.settings)? };
         let name = metadata.name.as_deref().unwrap_or("texture");
         let request = settings.request(registry, reading.settings(), name, TOOL);
-        request.map_err(|error| match error {
+        request.map(|request| request.with_law_of(metadata)).map_err(|error| match error {
             AuthorError::ModelNotFitted { model, fitted, .. } => {
                 unknown("a model in options", &model, &fitted.join(", "))
             }

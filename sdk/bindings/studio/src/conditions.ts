@@ -58,8 +58,9 @@ export function near(texture: Texture, model: string, wanted: Slid): { place: nu
 /** The recorded range of a model: lowest and highest speed and force; null where nothing is known. */
 export function recordedRange({ manifest, conditions }: Texture, model: string) {
   const at = manifest.representations.find((one) => one.model === model)?.at ?? [];
+  const recorded = (condition: number) => (manifest.conditions[condition]?.segments === 0 ? undefined : conditions[condition]);
   const range = (name: "speed" | "force", least: number): readonly [number, number] | null => {
-    const known = at.map(({ condition }) => conditions[condition]?.[name] ?? NaN).filter((x) => x >= least);
+    const known = at.map(({ condition }) => recorded(condition)?.[name] ?? NaN).filter((x) => x >= least);
     return known.length > 0 ? [Math.min(...known), Math.max(...known)] : null;
   };
   return { speed: range("speed", LEAST_MM_S), force: range("force", LEAST_N) };

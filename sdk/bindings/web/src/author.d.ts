@@ -184,6 +184,12 @@ export interface FitSettings extends ReadingSettings, Metadata {
    */
   storage?: "auto" | "coded" | "plain";
   /**
+   * Fit only the recorded conditions. Otherwise conditions are computed between recorded speeds, if
+   * frequencies follow the speed, and at a third and three times the speed, if it is the only one and the
+   * contact is unknown.
+   */
+  recorded_only?: boolean;
+  /**
    * Divides recordings of a free motion into conditions. The grid lines are speeds (mm/s) and
    * forces (N).
    */
@@ -371,7 +377,11 @@ export interface FitReport {
     fit_ms: number;
     /** Felt difference at the condition where it is largest. */
     felt: FeltError | null;
-    at: { condition: number; level_rms: number; quality: Record<string, unknown> | null; left_out: Record<string, unknown> | null; felt: FeltError | null }[];
+    /**
+     * The errors at each condition. `held_out_error` is in units of the difference between two
+     * recordings, `held_out_error_db` in decibels; both are absent for recordings that are too short.
+     */
+    at: { condition: number; level_rms: number; held_out_error?: number | null; held_out_error_db?: number; quality: Record<string, unknown> | null; left_out: Record<string, unknown> | null; felt: FeltError | null }[];
   }[];
   /** Ids of the models. The model whose difference from the recording is felt least comes first. */
   ranked: string[];

@@ -137,6 +137,10 @@ const LEAST_WEIGHT: f64 = 0.1;
 /// Standard deviation between surfaces of each exponent: frequency over speed, level over speed,
 /// level over force.
 const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
+/// Exponents of the force for a tool and for an unknown contact: of an asset that states no law, and
+/// of new assets.
+const UNSTATED_FORCE: [f64; 2] = [0.07, 0.5];
+const NEW_FORCE: [f64; 2] = [0.0, 0.25];
 /// Largest allowed absolute value of an exponent.
 pub const MOST_EXPONENT: f64 = 4.0;
 
@@ -215,6 +219,8 @@ impl Law {
     /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
     ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///
+    /// This is the law of an asset that states none. New assets state [`Self::for_new_assets`].
+    ///
     /// The assumed exponents of the level depend on the frequency exponent a. Here a is 1, as for a
     /// relief, or 0, as for a surface whose frequencies do not change with the speed.
     /// [`Self::reassumed`] interpolates between these two cases if a was measured or given.
@@ -223,7 +229,7 @@ impl Law {
             Contact::Finger => 1.0,
             Contact::Tool | Contact::Unknown => 0.0,
         };
-        let [b, c] = assumed_levels(a, quantity, contact);
+        let [b, c] = assumed_levels(a, quantity, contact, UNSTATED_FORCE);
         Self {
             frequency_speed: Exponent::assumed(a),
             level_speed: Exponent::assumed(b),
@@ -231,9 +237,21 @@ impl Law {
         }
     }
 
-    /// Returns this law for another quantity or contact. Assumed exponents are replaced by the new
-    /// assumption, measured exponents are averaged with the new assumption, and given exponents do
-    /// not change.
+    /// Returns the law that a new asset states if nothing was measured. It is [`Self::assumed`]
+    /// except for the exponent of the force, which is 0 for a tool and 0.25 for an unknown contact.
+    ///
+    /// On 20 materials of the Penn Haptic Texture Toolkit, the exponent of a tool's level is 0.03
+    /// (median; quartiles 0.01 and 0.05). Three fingers gave -0.07, 1.18 and 2.58. For an unknown
+    /// contact, 0.25 is the mean of 0 for a tool and 1 for a finger, with three tools to one finger,
+    /// since the large public collections were recorded with tools.
+    #[must_use]
+    pub fn for_new_assets(quantity: Quantity, contact: Contact) -> Self {
+        Self::assumed(quantity, contact).reassumed(quantity, contact)
+    }
+
+    /// Returns this law for a new asset, or for another quantity or contact. Assumed exponents are
+    /// replaced by those of [`Self::for_new_assets`], measured exponents are averaged with them, and
+    /// given exponents do not change.
     ///
     /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
     /// contact. But if this exponent was measured, a measured exponent of the level over the speed
@@ -260,7 +278,7 @@ impl Law {
         };
         let frequency_speed = anew(0, self.frequency_speed, assumed.frequency_speed);
         // The frequency exponent comes first, because the assumed levels depend on the result.
-        let [b, c] = assumed_levels(frequency_speed.exponent, quantity, contact);
+        let [b, c] = assumed_levels(frequency_speed.exponent, quantity, contact, NEW_FORCE);
         assumed.level_speed = Exponent::assumed(b);
         assumed.level_force = Exponent::assumed(c);
         let mut level_speed = anew(1, self.level_speed, assumed.level_speed);
@@ -336,11 +354,16 @@ impl fmt::Display for Law {
 
 /// Returns the assumed exponents of the level over speed and over force. They are interpolated
 /// between a surface whose frequencies do not change (frequency exponent 0) and a relief (frequency
-/// exponent 1).
-const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Contact) -> [f64; 2] {
+/// exponent 1). `force` has the exponents of the force for a tool and for an unknown contact.
+const fn assumed_levels(
+    frequency_speed: f64,
+    quantity: Quantity,
+    contact: Contact,
+    force: [f64; 2],
+) -> [f64; 2] {
     let stays = match contact {
-        Contact::Tool => [0.43, 0.07],
-        Contact::Finger | Contact::Unknown => [0.75, 0.5],
+        Contact::Tool => [0.43, force[0]],
+        Contact::Finger | Contact::Unknown => [0.75, force[1]],
     };
     let relief = match quantity {
         Quantity::Velocity => [1.0, 1.0],

@@ -14,8 +14,8 @@ use crate::Quantity;
 use crate::check_manifest::check_extension_name;
 use crate::error::MetadataError;
 use crate::law::{Contact, Law};
-use crate::measure::ErrorMeasure;
-use crate::quality::{LeftOut, Quality};
+use crate::measure::{ErrorMeasure, Measure};
+use crate::quality::{HeldOut, LeftOut, Quality};
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
@@ -135,6 +135,17 @@ impl Manifest {
         let since_1_1 = self.is_coded()
             || self.conditions.iter().any(|c| c.repeatability_third_octave_rms_db.is_some());
         VERSIONS[usize::from(since_1_1)].to_owned()
+    }
+
+    /// Returns the held-out error at a condition of a representation; `None` if the manifest does not
+    /// state it.
+    pub fn held_out(&self, at: &AtCondition) -> Option<HeldOut> {
+        let held_out_error_db = at.left_out?.0.get(Measure::ThirdOctave)?;
+        // The repeatability is that of the whole recording. Its halves differ by √2 times as much.
+        let condition = self.conditions.get(at.condition)?;
+        let second = condition.repeatability_third_octave_rms_db;
+        let second = second.map(|db| db * std::f64::consts::SQRT_2).filter(|db| *db > 0.0);
+        Some(HeldOut { held_out_error_db, held_out_error: second.map(|db| held_out_error_db / db) })
     }
 
     /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::Condition;
 use crate::measure::{By, Measure};
 
 /// The values of the measures of agreement. A measure that was not computed has no value.
@@ -129,24 +129,13 @@ pub struct LeftOut(pub Measures);
 
 /// The held-out error of a representation at a condition: its third-octave error on blocks of time
 /// to which it was not fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOut {
     /// The error, decibels.
     pub held_out_error_db: f64,
     /// The error relative to the difference between the odd and the even blocks of the recording: 1
     /// is the error of a second recording. `None` if this difference is not known, or 0.
     pub held_out_error: Option<f64>,
-}
-
-impl HeldOut {
-    /// Returns the held-out error that a manifest states at a condition; `None` if it states none.
-    pub fn new(left_out: Option<&LeftOut>, condition: &Condition) -> Option<Self> {
-        let held_out_error_db = left_out?.0.get(Measure::ThirdOctave)?;
-        // The repeatability is that of the whole recording. Its halves differ by √2 times as much.
-        let second = condition.repeatability_third_octave_rms_db;
-        let second = second.map(|db| db * std::f64::consts::SQRT_2).filter(|db| *db > 0.0);
-        Some(Self { held_out_error_db, held_out_error: second.map(|db| held_out_error_db / db) })
-    }
 }
 
 impl LeftOut {

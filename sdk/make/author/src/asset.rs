@@ -69,7 +69,7 @@ pub fn fit_asset_watched(
         None => {
             let segmented = takes.iter().map(|take| segment_take(take, spectrum, *strict));
             let segmented = segmented.collect::<Result<Vec<SegmentedTake>, _>>()?;
-            let conditions = ConditionSpectra::new(segmented, spectrum.averaging, *strict)?;
+            let conditions = ConditionSpectra::new(segmented, request)?;
             (conditions, None, Vec::new())
         }
         Some(lines) => {

@@ -120,12 +120,11 @@ pub fn compare(
             Some(motion) => nearest(representation, conditions, motion),
             None => playable.default_condition(),
         };
-        let left_out = representation.at.iter().find(|at| at.condition == nearest);
-        let left_out = left_out.and_then(|at| at.left_out.as_ref());
+        let at = representation.at.iter().find(|at| at.condition == nearest);
         Ok(ComparedModel {
             fluctuation: pair.map(|(a, b)| FluctuationDifference::new(a, b)),
             model: representation.model.clone(),
-            held_out: HeldOut::new(left_out, &conditions[nearest]),
+            held_out: at.and_then(|at| asset.manifest().held_out(at)),
             difference: Difference::new(reference, level_rms, &magnitude, quality),
         })
     });

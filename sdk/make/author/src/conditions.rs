@@ -9,9 +9,11 @@ use crate::blocks::block_power;
 use crate::findings::{differing, level_of};
 use crate::law::law;
 use crate::odd_and_even::odd_and_even;
-use crate::spectrum::{Averaging, SegmentSpectra};
+use crate::spectrum::SegmentSpectra;
 use crate::take::{SegmentedTake, refuse, sentence};
-use crate::{AuthorError, Exploration, TextureSpectrum, between};
+use crate::{
+    AssetRequest, AuthorError, Exploration, SpectrumOptions, TextureSpectrum, between, tilted,
+};
 
 /// The spectrum of one condition.
 #[derive(Debug, Clone)]
@@ -123,10 +125,11 @@ impl ConditionSpectra {
     /// `strict`, also when the levels of a condition's recordings differ.
     pub(crate) fn new(
         takes: Vec<SegmentedTake>,
-        averaging: Averaging,
-        strict: bool,
+        request: &AssetRequest,
     ) -> Result<Self, AuthorError> {
-        let contact = contact(takes.iter().map(|take| take.simulated));
+        let AssetRequest { spectrum: SpectrumOptions { averaging, .. }, strict, .. } = *request;
+        let simulated = takes.iter().map(|take| take.simulated);
+        let contact = request.contact.unwrap_or_else(|| contact(simulated));
         let mut gatherings = Vec::<Gathering>::new();
         let mut recordings = RecordingsReport::default();
         for take in takes {
@@ -156,7 +159,7 @@ impl ConditionSpectra {
             recordings.add_findings(name, found);
         }
         check_known(&gatherings)?;
-        let mut all = Vec::new();
+        let (mut all, mut all_parts) = (Vec::new(), Vec::new());
         for Gathering { condition, parts, .. } in gatherings {
             let spectrum = TextureSpectrum::average(&parts, averaging)?;
             let condition = Condition {
@@ -169,6 +172,7 @@ impl ConditionSpectra {
                 halves: odd_and_even(&parts, averaging).map(|halves| [halves.odd, halves.even]),
                 ..ConditionSpectrum::new(condition, spectrum)
             });
+            all_parts.push(parts);
         }
         let differ = |of: fn(&TextureSpectrum, &TextureSpectrum) -> bool| {
             all.windows(2).any(|pair| of(&pair[0].spectrum, &pair[1].spectrum))
@@ -180,8 +184,14 @@ impl ConditionSpectra {
             return Err(AuthorError::BandsDiffer);
         }
         let law = law(&all, contact);
-        let between = between::conditions(&all, &law);
-        all.extend(between);
+        let quantity = all.first().map_or_else(Default::default, |one| one.spectrum.quantity);
+        let given = request.law.map(|given| given.over(law).reassumed(quantity, contact));
+        let law = given.unwrap_or(law);
+        if !request.recorded_only {
+            let mut computed = between::conditions(&all, &law);
+            computed.extend(tilted::conditions(&all, &all_parts, &law, contact, averaging)?);
+            all.extend(computed);
+        }
         Ok(Self { all, contact, law, recordings })
     }
 }

@@ -78,6 +78,7 @@ pub mod simulate;
 mod spectrum;
 mod take;
 mod texture_difference;
+mod tilted;
 pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use htex_format::Contact;
 use htex_host::LoadedModel;
 
 use crate::SpectrumOptions;
 use crate::coding::Coding;
 use crate::grid::Grid;
 use crate::level::Level;
+use crate::settings::{GivenLaw, Metadata};
 
 /// A model to fit, with one value for each of its options.
 #[derive(Debug, Clone)]
@@ -57,6 +59,11 @@ pub struct AssetRequest {
     pub models: Vec<ModelRequest>,
     pub spectrum: SpectrumOptions,
     pub level: Level,
+    /// What slid over the surface. `None`: a finger if all recordings are simulated, otherwise
+    /// unknown.
+    pub contact: Option<Contact>,
+    /// Exponents of the law that replace measured or assumed ones.
+    pub law: Option<GivenLaw>,
     /// Models to try with their default options, in addition to `models`, when a representation has
     /// a large band error.
     pub alternatives: Vec<LoadedModel>,
@@ -69,6 +76,8 @@ pub struct AssetRequest {
     pub keep_reference: bool,
     /// Whether the asset is coded.
     pub coding: Coding,
+    /// Whether to fit only the recorded conditions, and none that are computed from them.
+    pub recorded_only: bool,
     /// Options whose values differ from their defaults, to be stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
     /// Program and version, stored in the provenance.
@@ -92,6 +101,13 @@ impl AssetRequest {
     #[must_use]
     pub fn with_spectrum(mut self, spectrum: SpectrumOptions) -> Self {
         self.spectrum = spectrum;
+        self
+    }
+
+    /// Sets the contact and the given exponents of the law, as metadata states them.
+    #[must_use]
+    pub fn with_law_of(mut self, metadata: &Metadata) -> Self {
+        (self.contact, self.law) = (metadata.contact, metadata.law);
         self
     }
 

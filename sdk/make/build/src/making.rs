@@ -75,7 +75,7 @@ impl Job {
 
     fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
         let takes = self.recordings.iter().map(|recording| self.read_take(recording));
-        let request = self.request(registry)?;
+        let request = self.request(registry)?.with_law_of(&self.metadata);
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
         let mut fitted = match self.kind {
             FileKind::Signal => fit_signals(&takes, request, self.signal.full_scale)?,
@@ -92,7 +92,12 @@ impl Job {
         }
         let record = Record {
             outcome: Outcome::Fitted,
-            segments: fitted.spectra.iter().map(|s| s.segments).collect(),
+            segments: fitted
+                .spectra
+                .iter()
+                .filter(|spectrum| spectrum.is_recorded())
+                .map(|spectrum| spectrum.segments)
+                .collect(),
             felt: felt(&fitted),
             findings: by_code(&fitted.findings),
             thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),

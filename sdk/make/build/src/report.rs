@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use htex_author::{FeltError, FeltShare};
-use htex_format::{Asset, Measure};
+use htex_format::{Asset, HeldOut, Measure};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -150,6 +150,9 @@ pub struct AssetReport {
     /// this value are within the recordings' own variation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
+    /// Held-out error at the condition where it is largest, for each model (by id).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub held_out: BTreeMap<String, HeldOut>,
     /// Largest nine-band RMS error over all conditions, decibels, for each model (by id).
     pub band_error_rms_db: BTreeMap<String, f64>,
     /// For each model (by id), how much of the difference from the recordings is felt. Each number
@@ -202,12 +205,18 @@ impl MissedGate {
 impl AssetReport {
     fn new(made: &JobResult, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
-        let conditions = || manifest.conditions.iter();
+        let conditions = || manifest.conditions.iter().filter(|c| c.segments != Some(0));
         // A representation that a file of another format states has no error.
         let errors = manifest.representations.iter().filter_map(|representation| {
             let qualities = representation.at.iter().filter_map(|at| at.quality.as_ref());
             let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
             let worst = errors.reduce(f64::max)?;
+            Some((representation.model.clone(), worst))
+        });
+        let held_out = manifest.representations.iter().filter_map(|representation| {
+            let at = representation.at.iter();
+            let all = at.filter_map(|at| manifest.held_out(at));
+            let worst = all.max_by(|a, b| a.held_out_error_db.total_cmp(&b.held_out_error_db))?;
             Some((representation.model.clone(), worst))
         });
         Self {
@@ -224,6 +233,7 @@ impl AssetReport {
             repeatability_rms_db: conditions()
                 .filter_map(|c| c.repeatability_rms_db)
                 .reduce(f64::max),
+            held_out: held_out.collect(),
             band_error_rms_db: errors.collect(),
             felt: made.record.felt.clone(),
             findings: made.record.findings.clone(),

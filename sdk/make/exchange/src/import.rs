@@ -262,6 +262,8 @@ pub fn fit_signals(
         let options = &mut request.recorded_options;
         options.insert("full-scale".to_owned(), full_scale.to_string());
     }
+    // A signal of another program was not recorded at a speed.
+    request.recorded_only = true;
     let mut fitted = fit_asset(takes, &request)?;
     // Repeated samples agree with themselves, so repeatability and held-out error would be those of
     // a perfect recording.
@@ -284,6 +286,7 @@ fn fitted(
 ) -> Result<ImportedAsset, ExchangeError> {
     let reading = ReadingSettings::default();
     let request = how.fit.request(registry, &reading, how.name, how.tool)?;
+    let request = request.with_law_of(&how.metadata);
     let given = Exploration { speed_mm_s: how.physical.speed_mm_s, force_n: how.physical.force_n };
     let takes = [Take { recording, given }];
     let fitted = fit_signals(&takes, request, how.physical.full_scale)?;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, field
 from typing import Any, Literal, get_type_hints
@@ -411,7 +412,8 @@ def _simulation(columns: Any, csv: bytes, rate_hz: float, response: Response) ->
 
 def quality_table(texture: _htex.Texture) -> dict[str, list[Any]]:
     """Return the errors that a texture stores for each model at each condition, as columns for
-    pandas or polars."""
+    pandas or polars. The held-out errors are in units of the difference between two recordings
+    (``held_out_error``) and in decibels."""
     rows: list[dict[str, Any]] = []
     for representation in texture.manifest["representations"]:
         for at in representation["at"]:
@@ -422,6 +424,13 @@ def quality_table(texture: _htex.Texture) -> dict[str, list[Any]]:
                 "force_n": condition.force_n,
                 "level_rms": at["level_rms"],
             }
+            row["held_out_error"] = row["held_out_error_db"] = None
+            held_out = at.get("left_out", {}).get("third_octave_error_rms_db")
+            if held_out is not None:
+                row["held_out_error_db"] = held_out
+                second = condition.repeatability_third_octave_rms_db
+                if second:
+                    row["held_out_error"] = held_out / (math.sqrt(2) * second)
             quality = at.get("quality", {})
             row.update({name: value for name, value in quality.items() if name != "band_error_db"})
             rows.append(row)

@@ -46,7 +46,9 @@ function Attribution({ text }: { text: string }) {
 }
 
 function Conditions({ texture, model }: Opened) {
-  const at = texture.manifest.representations.find((one) => one.model === model)?.at ?? [];
+  const { representations, conditions } = texture.manifest;
+  const all = representations.find((one) => one.model === model)?.at ?? [];
+  const at = all.filter(({ condition }) => conditions[condition]?.segments !== 0);
   const rows = at.slice(0, 100);
   return (
     <section>

@@ -157,7 +157,7 @@ pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     };
     let (quantity, band) = (texture.quantity, texture.band);
     let mut asset = new_asset(&texture.name, quantity, band, provenance, conditions, made);
-    asset.manifest.law = Some(Law::assumed(quantity, Contact::Unknown));
+    asset.manifest.law = Some(Law::for_new_assets(quantity, Contact::Unknown));
     Ok(asset)
 }
 

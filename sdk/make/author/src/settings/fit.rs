@@ -85,12 +85,23 @@ settings! {
         /// it.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
-            display_order = 5,
+            display_order = 6,
             help = "Whether to code the asset: the same texture in fewer bytes, which readers of \
                     version 1.0 of the format refuse. `auto`: only with more than eight \
                     conditions, and only if the file becomes smaller [default: auto]"
         ))]
         pub storage: Option<Coding> = "storage",
+
+        /// Whether to fit only the recorded conditions, and none that are computed from them.
+        #[cfg_attr(feature = "clap", arg(
+            long = "recorded-only",
+            action = clap::ArgAction::SetTrue,
+            display_order = 5,
+            help = "Fit only the recorded conditions. Without this flag, htex adds computed \
+                    conditions: between recorded speeds, if frequencies follow the speed; and at \
+                    a third and three times the speed, if it is the only one and --contact is unknown"
+        ))]
+        pub recorded_only: Option<bool>,
 
         /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
         /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
@@ -295,6 +306,9 @@ impl FitSettings {
             grid: grid.transpose()?,
             keep_reference: self.keep_reference.unwrap_or_default(),
             coding: self.storage.unwrap_or_default(),
+            recorded_only: self
+                .recorded_only
+                .unwrap_or(self.preset.is_some_and(Preset::recorded_only)),
             recorded_options: recorded,
             tool: tool.to_owned(),
             ..AssetRequest::default()

@@ -63,6 +63,13 @@ impl Preset {
         }
     }
 
+    /// Returns whether only recorded conditions are fitted.
+    pub const fn recorded_only(self) -> bool {
+        match self {
+            Self::Paper => true,
+        }
+    }
+
     /// Returns how segments are averaged.
     pub const fn averaging(self) -> Averaging {
         match self {

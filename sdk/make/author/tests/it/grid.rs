@@ -171,7 +171,7 @@ fn what_drifts_is_in_the_left_out_error() {
 
 #[test]
 fn a_grid_that_is_no_better_than_one_condition_is_found() {
-    let fitted = fit(&[noise(15.0, 0.0)], &["bands"], Grid::default());
+    let fitted = fit(&[noise(8.0, 0.0)], &["bands"], Grid::default());
     let report = fitted.grid.unwrap();
     let (grid, one) = (report.left_out_rms_db, report.one_condition_rms_db);
     assert!(one.unwrap() <= grid.unwrap(), "{one:?} {grid:?}");

@@ -170,3 +170,66 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
         }
     }
 }
+
+/// A recording at one speed, of noise whose spectrum is flat, with an unknown contact.
+fn one_speed(request: impl Fn(AssetRequest) -> AssetRequest) -> Texture {
+    let mut state = 1u32;
+    let sample = |_| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let samples = (0..20_000).map(sample).collect();
+    let recording = htex_author::Recording::new("noise.csv", 4_000.0, vec![samples]).unwrap();
+    let given = Exploration { speed_mm_s: Some(60.0), force_n: Some(0.5) };
+    let registry = Registry::builtin();
+    let models = ["bands", "ar"].map(|name| ModelRequest::new(registry.find(name).unwrap()));
+    let request = request(AssetRequest::new("noise").with_models(models));
+    Texture::new(fit_asset(&[Take { recording, given }], &request).unwrap().asset)
+}
+
+/// Beside a single speed, an asset has a slower and a faster condition. In them, the level follows
+/// the law, and the spectrum is tilted by 0.14 per octave. The models that fit samples see the tilt
+/// too.
+#[test]
+fn one_speed_of_an_unknown_contact_is_tilted() {
+    let texture = one_speed(|request| request);
+    let manifest = texture.manifest();
+    let speeds: Vec<f64> = manifest.conditions.iter().filter_map(|c| c.speed_mm_s).collect();
+    assert_eq!(speeds, [60.0, 20.0, 180.0]);
+    // Bands rounds to 1 dB.
+    for (model, tolerance_db) in [("bands", 1.0), ("ar", 0.6)] {
+        let representation = texture.representation(model).unwrap();
+        let at = |speed| {
+            let motion = Some(Motion::new(speed, 0.5));
+            representation.magnitude(motion, &[125.0, 500.0]).unwrap()
+        };
+        let level = |place: usize| representation.data().at[place].level_rms;
+        for (place, ratio) in [(1, 1.0 / 3.0), (2, 3.0f64)] {
+            assert!((level(place) / level(0) / ratio.powf(0.75) - 1.0).abs() < 0.02, "{model}");
+            // From 125 to 500 Hz, two octaves.
+            let [own, other] = [at(60.0), at(60.0 * ratio)].map(|of| of[1] / of[0]);
+            let tilt_db = 20.0 * (other / own).log10();
+            let expected_db = 20.0 * 0.28 * ratio.log10();
+            assert!(
+                (tilt_db - expected_db).abs() < tolerance_db,
+                "{model}: {tilt_db}, {expected_db}"
+            );
+        }
+    }
+}
+
+/// Nothing is added where more is known, or where the user asks for recorded conditions only.
+#[test]
+fn other_assets_have_only_recorded_conditions() {
+    let conditions = |set: &dyn Fn(&mut AssetRequest)| {
+        let texture = one_speed(|mut request| {
+            set(&mut request);
+            request
+        });
+        texture.manifest().conditions.len()
+    };
+    assert_eq!(conditions(&|request| request.contact = Some(Contact::Tool)), 1);
+    assert_eq!(conditions(&|request| request.contact = Some(Contact::Finger)), 1);
+    assert_eq!(conditions(&|request| request.recorded_only = true), 1);
+    assert_eq!(conditions(&|request| request.law = "frequency-speed=0.3".parse().ok()), 1);
+}

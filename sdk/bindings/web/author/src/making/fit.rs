@@ -51,7 +51,8 @@ fn request(
 ) -> Result<AssetRequest, Refusal> {
     let name =
         metadata.name.clone().or_else(|| reading.stem()).unwrap_or_else(|| "texture".to_owned());
-    let mut request = fitting.request(registry, &reading.settings, &name, TOOL)?;
+    let request = fitting.request(registry, &reading.settings, &name, TOOL)?;
+    let mut request = request.with_law_of(metadata);
     request.spectrum = reading.spectrum.clone();
     if let Some(response) = &reading.response {
         let recorded = &mut request.recorded_options;

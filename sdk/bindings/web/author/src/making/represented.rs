@@ -2,7 +2,7 @@
 //! difference from the fitted data a fingertip can feel.
 
 use htex_author::FeltError;
-use htex_format::{Asset, LeftOut, Quality};
+use htex_format::{Asset, HeldOut, LeftOut, Quality};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -19,6 +19,8 @@ pub(super) struct Model<'a> {
 struct At<'a> {
     condition: usize,
     level_rms: f64,
+    #[serde(flatten)]
+    held_out: Option<HeldOut>,
     quality: Option<&'a Quality>,
     left_out: Option<LeftOut>,
     felt: Option<FeltError>,
@@ -38,6 +40,7 @@ pub(super) fn represented<'a>(asset: &'a Asset, felt: &[Vec<Option<FeltError>>])
                 .map(|(k, at)| At {
                     condition: at.condition,
                     level_rms: at.level_rms,
+                    held_out: asset.manifest.held_out(at),
                     quality: at.quality.as_ref(),
                     left_out: at.left_out,
                     felt: felt.get(k).copied().flatten(),

@@ -1,0 +1,91 @@
+//! Extra conditions at a slower and a faster speed than the only recorded one.
+//!
+//! Where the contact is unknown, a player keeps the shape of the spectrum at every speed and scales
+//! its level. But on recorded strokes of fingertips, the level of high frequencies rises faster with
+//! the speed than the level of low ones: its exponent was about 0.7 + 0.28 log2(f / 250 Hz). From
+//! three recorded speeds on, the recordings themselves show this. With one recorded speed, half of
+//! this tilt is assumed, because materials differ: half of it helps on some and harms little on
+//! others (`docs/real-recordings.md`).
+//!
+//! A condition is computed on each side, so the player and the file format need no rule of their
+//! own. The level of the conditions follows the law.
+
+use htex_dsp::grid::level_rms;
+use htex_format::{Condition, Contact, ExponentSource, Law};
+
+use crate::conditions::{ConditionSpectrum, four_digits};
+use crate::spectrum::SegmentSpectra;
+use crate::{AuthorError, Averaging, TextureSpectrum};
+
+/// Half of the measured tilt: the change of the level's exponent over an octave.
+const TILT: f64 = 0.14;
+/// The frequency at which the tilt changes nothing, hertz.
+const MIDDLE_HZ: f64 = 250.0;
+/// The speeds of the added conditions, relative to the recorded speed.
+const SPEEDS: [f64; 2] = [1.0 / 3.0, 3.0];
+
+/// Returns conditions at a slower and a faster speed than the recorded ones, if all recordings have
+/// one speed, the contact is unknown and the law leaves frequencies as they are. `parts` are the
+/// segment spectra of each recorded condition.
+///
+/// # Errors
+/// The errors of [`TextureSpectrum::average`].
+pub(crate) fn conditions(
+    recorded: &[ConditionSpectrum],
+    parts: &[Vec<SegmentSpectra>],
+    law: &Law,
+    contact: Contact,
+    averaging: Averaging,
+) -> Result<Vec<ConditionSpectrum>, AuthorError> {
+    let Some(speed) = only_speed(recorded) else { return Ok(Vec::new()) };
+    let assumed = law.frequency_speed.source == ExponentSource::Assumed;
+    if contact != Contact::Unknown || !assumed {
+        return Ok(Vec::new());
+    }
+    let mut all = Vec::new();
+    for ratio in SPEEDS {
+        for (one, parts) in recorded.iter().zip(parts) {
+            let condition = Condition {
+                speed_mm_s: Some(four_digits(ratio * speed)),
+                force_n: one.condition.force_n,
+                segments: Some(0),
+                ..Condition::default()
+            };
+            let level = libm::pow(ratio, law.level_speed.exponent);
+            let spectrum = tilted(&one.spectrum, parts.clone(), [ratio, level], averaging)?;
+            let (block_power, halves) = (None, None);
+            all.push(ConditionSpectrum { condition, spectrum, block_power, halves });
+        }
+    }
+    Ok(all)
+}
+
+/// Returns the speed of all recorded conditions, if they have one and their forces are known.
+fn only_speed(recorded: &[ConditionSpectrum]) -> Option<f64> {
+    let known = |one: &ConditionSpectrum| one.condition.speed_mm_s.zip(one.condition.force_n);
+    let (speed, _) = known(recorded.first()?)?;
+    let same = |one| known(one).is_some_and(|(other, _)| Condition::is_same(other, speed));
+    (speed > 0.0 && recorded.iter().all(same)).then_some(speed)
+}
+
+/// Returns the spectrum of segments at another speed. `ratio` is this speed relative to the recorded
+/// one, and `level` the change of the level.
+fn tilted(
+    recorded: &TextureSpectrum,
+    mut parts: Vec<SegmentSpectra>,
+    [ratio, level]: [f64; 2],
+    averaging: Averaging,
+) -> Result<TextureSpectrum, AuthorError> {
+    let gain = |hz: &f64| libm::pow(ratio, TILT * libm::log2(hz / MIDDLE_HZ));
+    let gains: Vec<f64> = recorded.frequency_hz.iter().map(gain).collect();
+    for spectrum in parts.iter_mut().flat_map(|part| &mut part.spectra) {
+        spectrum.iter_mut().zip(&gains).for_each(|(bin, gain)| *bin *= gain);
+    }
+    let mut spectrum = TextureSpectrum::average(&parts, averaging)?;
+    let now = level_rms(&spectrum.magnitude);
+    if now > 0.0 {
+        let gain = level * level_rms(&recorded.magnitude) / now;
+        spectrum.magnitude.iter_mut().chain(&mut spectrum.signal).for_each(|x| *x *= gain);
+    }
+    Ok(TextureSpectrum { segments: 0, repeatability: None, ..spectrum })
+}

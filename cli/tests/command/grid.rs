@@ -34,7 +34,10 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     assert!(std::fs::read_to_string(place.path("page.html")).unwrap().contains("Conditions"));
 
     let info = place.json(&["info", "a.htex", "--json"]);
-    assert_eq!(info["manifest"]["htex"], "1.0");
+    // There are more than eight conditions, and the coded file is smaller.
+    assert!(named > 8);
+    assert_eq!(info["manifest"]["htex"], "1.1");
+    assert_eq!(info["manifest"]["extensions_required"], serde_json::json!(["org.htex.coded/1"]));
     // The file holds fewer digits of the repeatability.
     let place_of = |json: &serde_json::Value| -> Vec<[f64; 3]> {
         let conditions = json["manifest"]["conditions"].as_array().unwrap().iter();
@@ -52,11 +55,34 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     let played = ["spectrum", "a.htex", "--speed", "100", "--force", "1", "--json"];
     assert!(place.json(&played)["magnitude"].is_array());
 
-    let text = place.run(
-        &[&fit[..], &["--grid", "speed=60,120", "--grid", "force=0.5,1.5", "-o", "b.htex"]]
-            .concat(),
-    );
+    // The same texture without codes: any reader can open it, and it plays the same samples.
+    let plain = place.run(&["edit", "a.htex", "--storage", "plain", "-o", "plain.htex"]);
+    assert_eq!(plain.code(), 0, "{}", plain.error());
+    let plain = place.json(&["info", "plain.htex", "--json"]);
+    assert_eq!(plain["manifest"]["extensions_required"], serde_json::Value::Null);
+    assert_eq!(place_of(&plain), place_of(&info));
+    assert!(plain["bytes"].as_u64() > info["bytes"].as_u64());
+    let samples = |asset: &str| {
+        let motion = ["--speed", "100", "--force", "1", "--seconds", "0.2", "-o", "played.wav"];
+        assert_eq!(place.run(&[&["synth", asset], &motion[..]].concat()).code(), 0);
+        std::fs::read(place.path("played.wav")).unwrap()
+    };
+    assert_eq!(samples("plain.htex"), samples("a.htex"));
+    let again = place.run(&["edit", "plain.htex", "--storage", "auto", "-o", "again.htex"]);
+    assert_eq!(again.code(), 0, "{}", again.error());
+    let file = |name: &str| std::fs::read(place.path(name)).unwrap();
+    assert_eq!(file("again.htex"), file("a.htex"));
+
+    let few = [&fit[..], &["--grid", "speed=60,120", "--grid", "force=0.5,1.5"]].concat();
+    let text = place.run(&[&few[..], &["-o", "b.htex"]].concat());
     assert_eq!(text.code(), 0, "{}", text.error());
+    let required = |asset: &str| {
+        let info = place.json(&["info", asset, "--json"]);
+        info["manifest"]["extensions_required"].is_array()
+    };
+    assert!(!required("b.htex"));
+    assert_eq!(place.run(&[&few[..], &["--storage", "coded", "-o", "c.htex"]].concat()).code(), 0);
+    assert!(required("c.htex"));
     assert!(text.text().contains("windows of 0.2 s are steady"), "{}", text.text());
 }
 

@@ -3,24 +3,42 @@
 use std::sync::OnceLock;
 
 use htex_author::stored_fields;
-use htex_format::{AtCondition, Band, Condition, Manifest, Representation};
+use htex_format::{Asset, AtCondition, Band, Condition, Manifest, Representation};
 use htex_host::{LoadedModel, Registry};
 
 use crate::asset::open;
 use crate::container::container;
 
 /// Opens an asset whose only block is the input. The input's first byte chooses the model, the
-/// second the number of conditions.
+/// second the number of conditions and, by its highest bit, whether the asset is coded.
 pub fn parameter_block(input: &[u8]) -> bool {
     let Some((&[model, conditions], block)) = input.split_first_chunk::<2>() else {
         return false;
     };
     static REGISTRY: OnceLock<Registry> = OnceLock::new();
     let models = REGISTRY.get_or_init(Registry::builtin).models();
-    let manifest =
+    let mut manifest =
         manifest(&models[usize::from(model) % models.len()], 1 + usize::from(conditions % 4));
+    if conditions & CODED != 0 {
+        manifest = coded(manifest);
+    }
     let json = serde_json::to_vec(&manifest).expect("a manifest is JSON");
     open(&container(&json, [("parameters.bin", block)]))
+}
+
+/// Bit of the second byte that chooses a coded asset.
+pub(crate) const CODED: u8 = 0x80;
+
+/// The manifest of the same asset, coded.
+pub(crate) fn coded(manifest: Manifest) -> Manifest {
+    let asset = Asset {
+        manifest,
+        parameters: Vec::new(),
+        reference: None,
+        plugins: Vec::new(),
+        notes: Vec::new(),
+    };
+    asset.coded().manifest
 }
 
 /// The manifest of an asset with one model at some conditions.

@@ -28,6 +28,13 @@ pub fn seeds() -> Vec<Seed> {
         add("open_asset", asset.to_bytes().expect("a sound asset"));
         let block = block_of(&asset);
         add("parameter_block", [&[i as u8, 1], &block[..]].concat());
+        let coded = asset.clone().coded();
+        let of_coded = block_of(&coded);
+        add("parameter_block", [&[i as u8, 1 | block::CODED], &of_coded[..]].concat());
+        if let Some(of_coded) = seeds.last_mut() {
+            of_coded.1 += "-coded";
+        }
+        let mut add = |target, bytes| seeds.push((target, model.short_name().to_owned(), bytes));
         let json = serde_json::to_vec(&asset.manifest).expect("a manifest is JSON");
         add("open_asset", container(&json, [("parameters.bin", &block[..])]));
         if let Some(stored) = seeds.last_mut() {

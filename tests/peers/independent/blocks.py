@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 
+from .coded import CodeError, read_coded
 from .stores import Store
 
 
@@ -64,8 +65,22 @@ def read_block(data: bytes, fields: list[dict], conditions: int, budget: Budget)
         values: list[float | list[float]] = []
         for field in fields:
             store = Store.of(field)
+            if store.kind == "coded":
+                values.append([])
+                continue
             values.append(read_list(reader, store, budget) if field.get("list") else read_number(reader, store, budget))
         result.append(values)
+    stores = [Store.of(field) for field in fields]
+    coded = [i for i, store in enumerate(stores) if store.kind == "coded"]
+    if coded:
+        lists = [bool(fields[i].get("list")) for i in coded]
+        try:
+            steps = read_coded(reader.take(reader.left()), lists, conditions, budget.take)
+        except CodeError as error:
+            raise BlockError("PARAMETERS_INVALID", str(error)) from error
+        for values, of_fields in zip(result, steps):
+            for i, q in zip(coded, of_fields):
+                values[i] = [stores[i].step(x) for x in q] if isinstance(q, list) else stores[i].step(q)
     if reader.left():
         raise BlockError("PARAMETERS_INVALID", "too long")
     return result

@@ -12,6 +12,7 @@ from .manifest import CORRELATIONS, ERRORS, NINE_BANDS, QUANTITIES
 from .models import Models
 from .plugins import signature_is_valid
 from .stores import Store
+from .tables import CODED
 from .typed import is_blank
 
 DOI = re.compile(r"10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+")
@@ -123,7 +124,8 @@ def check_representations(manifest: dict, findings: Findings) -> None:
         ids.add(model)
         if not SEMVER.fullmatch(representation["model_version"]):
             findings.add("MODEL_VERSION_INVALID", pointer + "/model_version")
-        check_stored_fields(representation["fields"], pointer + "/fields", findings)
+        is_coded = CODED in manifest.get("extensions_required", [])
+        check_stored_fields(representation["fields"], is_coded, pointer + "/fields", findings)
         if not representation["at"]:
             findings.add("AT_EMPTY", pointer + "/at")
         check_at(representation["at"], pointer + "/at", len(manifest["conditions"]), largest, findings)
@@ -131,7 +133,7 @@ def check_representations(manifest: dict, findings: Findings) -> None:
             check_triangles(manifest["conditions"], representation, pointer, findings)
 
 
-def check_stored_fields(fields: list[dict], pointer: str, findings: Findings) -> None:
+def check_stored_fields(fields: list[dict], is_coded: bool, pointer: str, findings: Findings) -> None:
     names = set()
     for index, field in enumerate(fields):
         here = f"{pointer}/{index}"
@@ -141,7 +143,8 @@ def check_stored_fields(fields: list[dict], pointer: str, findings: Findings) ->
             findings.add("FIELD_DUPLICATE", here + "/name")
         names.add(field["name"])
         store = Store.of(field)
-        if store.wrong() or store.kind == "packed" and not field.get("list"):
+        misplaced = store.kind == "packed" and not field.get("list") or store.kind == "coded" and not is_coded
+        if store.wrong() or misplaced:
             findings.add("STORE_INVALID", here + "/store")
 
 
@@ -228,7 +231,9 @@ def check_extensions(manifest: dict, findings: Findings) -> None:
     for name in sorted(manifest.get("extensions", {}), key=lambda n: n.encode("utf-8")):
         if not EXTENSION.fullmatch(name):
             findings.add("EXTENSION_NAME_INVALID", f"/extensions/{escape(name)}")
-    for index, _ in enumerate(manifest.get("extensions_required", [])):
+    for index, name in enumerate(manifest.get("extensions_required", [])):
+        if name == CODED:
+            continue
         findings.add("EXTENSION_REQUIRED_UNKNOWN", f"/extensions_required/{index}")
 
 

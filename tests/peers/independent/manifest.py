@@ -7,6 +7,7 @@ import re
 from . import typed as t
 from .findings import Findings, Refused
 from .jsontext import parse
+from .tables import replace_tables
 
 # quantity: (unit, largest level)
 QUANTITIES = {
@@ -18,7 +19,7 @@ QUANTITIES = {
 }
 MINOR = 1
 VERSION = re.compile(r"(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)")
-STEP_STORES = ("u16", "u8", "packed")
+STEP_STORES = ("u16", "u8", "packed", "coded")
 
 STEPS = t.Object({"scale*": t.Number(), "offset": t.Number(), "log": t.Boolean()})
 
@@ -36,7 +37,7 @@ class Store(t.Any):
         for key in kinds:
             STEPS.check(value[key], f"{pointer}/{key}")
         if len(kinds) != 1:
-            raise t.Wrong(pointer, "not one of u16, u8 and packed")
+            raise t.Wrong(pointer, "not one of u16, u8, packed and coded")
 
     def unknown(self, value, pointer):
         if isinstance(value, dict):
@@ -192,6 +193,7 @@ def accept(document, findings: Findings) -> dict:
     newer = check_version(document, "htex", "", MINOR)
     if newer:
         findings.add("VERSION_NEWER", "/htex")
+    replace_tables(document)
     quantity = document.get("quantity")
     if isinstance(quantity, str) and quantity not in QUANTITIES:
         raise Refused("QUANTITY_UNKNOWN", "/quantity")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 SMALLEST_NORMAL = 2.0**-1022
 SMALLEST_SHARE = 2.0**-50
-LARGEST_STEP = {"u16": 65535, "u8": 255, "packed": 255}
+LARGEST_STEP = {"u16": 65535, "u8": 255, "packed": 255, "coded": 255}
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Store:
 
     @property
     def bytes(self) -> int:
-        return {"f64": 8, "f32": 4, "u16": 2, "u8": 1, "packed": 0}[self.kind]
+        return {"f64": 8, "f32": 4, "u16": 2, "u8": 1, "packed": 0, "coded": 0}[self.kind]
 
     def value(self, raw: bytes) -> float:
         """The number of `bytes` bytes."""

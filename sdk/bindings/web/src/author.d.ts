@@ -178,6 +178,12 @@ export interface FitSettings extends ReadingSettings, Metadata {
   /** Store the recorded spectra in the texture. */
   keep_reference?: boolean;
   /**
+   * Whether the texture is coded: fewer bytes, but readers of version 1.0 of the format refuse it.
+   * Default: `auto`, which codes a texture of more than eight conditions if its file becomes
+   * smaller.
+   */
+  storage?: "auto" | "coded" | "plain";
+  /**
    * Fit only the recorded conditions. Otherwise conditions are computed between recorded speeds, if
    * frequencies follow the speed, and at a third and three times the speed, if it is the only one and the
    * contact is unknown.

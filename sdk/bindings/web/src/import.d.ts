@@ -103,6 +103,8 @@ export interface ImportSettings extends Metadata {
   level?: "fitted" | "recording";
   /** Store the spectrum of the signal in the texture. */
   keep_reference?: boolean;
+  /** Whether the texture is coded: fewer bytes, but readers of version 1.0 refuse it. */
+  storage?: "auto" | "coded" | "plain";
 }
 
 export interface ImportReport {

@@ -2,14 +2,16 @@
 //!
 //! For each condition, a block contains the stored values of each field. Values are in
 //! little-endian order and have a fixed width, except in packed lists. The length of a list is a
-//! variable-length integer of bincode, which precedes the values of the list. The layout depends
-//! only on the fields in the manifest. This is the only module that uses bincode.
+//! variable-length integer of bincode, which precedes the values of the list. The coded fields of
+//! all conditions follow in one code (`coded.rs`). The layout depends only on the fields in the
+//! manifest. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
 
 use htex_model::Descriptor;
 
+use crate::coded::{self, CodeError, MOST_STEPS};
 use crate::packed::{most_steps, pack, packed_bytes, unpack};
 use crate::{Steps, StoredAs, StoredField, WriteError};
 
@@ -26,6 +28,8 @@ pub(crate) enum BlockError {
         "the packed list {field} of condition {condition} is truncated or not in canonical form"
     )]
     Packed { field: String, condition: usize },
+    #[error("the code of the coded fields is truncated or not in canonical form")]
+    Coded,
     #[error("{0} bytes follow the last value")]
     Trailing(usize),
     #[error("{field}[{index}] of condition {condition} is not a finite number")]
@@ -40,8 +44,14 @@ pub(crate) fn encode(
     conditions: &[Vec<f64>],
 ) -> Result<Vec<u8>, WriteError> {
     let mut out = Vec::new();
+    let mut coded = Vec::new();
     for flat in conditions {
+        let mut steps = Vec::new();
         for (field, values) in split(fields, flat)? {
+            if let StoredAs::Coded(_) = field.store {
+                steps.push(coded_steps(field, values)?);
+                continue;
+            }
             if field.list {
                 put(&mut out, values.len() as u64)?;
             }
@@ -53,8 +63,27 @@ pub(crate) fn encode(
                 put_number(&mut out, quantise(field, index, value)?)?;
             }
         }
+        coded.push(steps);
     }
+    out.extend(coded::encode(&coded_lists(fields), &coded));
     Ok(out)
+}
+
+/// Returns, for each coded field, whether it is a list.
+fn coded_lists(fields: &[StoredField]) -> Vec<bool> {
+    fields.iter().filter(|field| field.store.is_coded()).map(|field| field.list).collect()
+}
+
+fn coded_steps(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> {
+    if values.len() > MOST_STEPS {
+        let problem = format!(
+            "list {} has {} values, and a coded list has at most {MOST_STEPS}",
+            field.name,
+            values.len()
+        );
+        return Err(WriteError::Layout { problem });
+    }
+    steps_of(field, values)
 }
 
 /// Decodes a block into flat arrays. `values` is the number of values that the reader may still
@@ -66,9 +95,13 @@ pub(crate) fn decode(
     values: &mut usize,
 ) -> Result<Vec<Vec<f64>>, BlockError> {
     let mut reader = Reader { bytes, limit: *values, left: *values };
-    let flats = (0..conditions)
-        .map(|condition| reader.condition(fields, condition))
-        .collect::<Result<_, _>>()?;
+    let flats = if coded_lists(fields).is_empty() {
+        (0..conditions)
+            .map(|condition| reader.condition(fields, condition))
+            .collect::<Result<_, _>>()?
+    } else {
+        reader.with_coded_fields(fields, conditions)?
+    };
     if !reader.bytes.is_empty() {
         return Err(BlockError::Trailing(reader.bytes.len()));
     }
@@ -76,13 +109,19 @@ pub(crate) fn decode(
     Ok(flats)
 }
 
-/// Returns how many bytes a flat array takes in a parameter block.
+/// Returns how many bytes a flat array takes in a parameter block with only this condition. Coded
+/// fields take fewer bytes at further conditions.
 ///
 /// # Errors
 /// The errors of [`round_parameters`].
 pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, WriteError> {
     let mut bytes = 0;
+    let mut coded = Vec::new();
     for (field, values) in split(fields, flat)? {
+        if let StoredAs::Coded(_) = field.store {
+            coded.push(coded_steps(field, values)?);
+            continue;
+        }
         if field.list {
             bytes += shortest(values.len() as u64);
         }
@@ -91,10 +130,10 @@ pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, Write
             store => values.len() * store.bytes(),
         };
     }
-    Ok(bytes)
+    Ok(bytes + coded::encode(&coded_lists(fields), &[coded]).len())
 }
 
-/// Quantises a packed list into steps.
+/// Quantises the values of a packed or coded field into steps.
 fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> {
     let step = |(index, &value): (usize, &f64)| match quantise(field, index, value)? {
         Number::U8(q) => Ok(q),
@@ -260,7 +299,7 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
             let q = step(steps, value, f64::from(u16::MAX)).map(|q| Number::U16(q as u16));
             (q, steps.value(0), steps.value(u16::MAX))
         }
-        StoredAs::U8(steps) | StoredAs::Packed(steps) => {
+        StoredAs::U8(steps) | StoredAs::Packed(steps) | StoredAs::Coded(steps) => {
             let q = step(steps, value, f64::from(u8::MAX)).map(|q| Number::U8(q as u8));
             (q, steps.value(0), steps.value(u8::MAX.into()))
         }
@@ -298,7 +337,9 @@ fn value_of(number: Number, store: StoredAs) -> f64 {
         (Number::F64(x), _) => x,
         (Number::F32(x), _) => f64::from(x),
         (Number::U16(q), StoredAs::U16(steps)) => steps.value(q),
-        (Number::U8(q), StoredAs::U8(steps) | StoredAs::Packed(steps)) => steps.value(q.into()),
+        (Number::U8(q), StoredAs::U8(steps) | StoredAs::Packed(steps) | StoredAs::Coded(steps)) => {
+            steps.value(q.into())
+        }
         (Number::U16(q), _) => f64::from(q),
         (Number::U8(q), _) => f64::from(q),
     }
@@ -336,31 +377,77 @@ impl Reader<'_> {
     ) -> Result<Vec<f64>, BlockError> {
         let mut flat = Vec::new();
         for field in fields {
-            let count = if field.list { self.length(field, condition)? } else { 1 };
-            if field.list {
-                flat.push(count as f64);
-            }
-            // Counted before anything is read: a packed step takes as little as one bit in the file
-            // and eight bytes in memory.
-            self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
-            if let StoredAs::Packed(steps) = field.store {
-                let all = self.steps(field, condition, count)?;
-                flat.extend(all.into_iter().map(|q| steps.value(q.into())));
-                continue;
-            }
-            for index in 0..count {
-                let value = self.number(field.store).ok_or_else(|| truncated(field, condition))?;
-                if !value.is_finite() {
-                    return Err(BlockError::NotFinite {
-                        field: field.name.clone(),
-                        condition,
-                        index,
-                    });
-                }
-                flat.push(value);
-            }
+            self.field(field, condition, &mut flat)?;
         }
         Ok(flat)
+    }
+
+    /// Reads the conditions of a block that has coded fields.
+    fn with_coded_fields(
+        &mut self,
+        fields: &[StoredField],
+        conditions: usize,
+    ) -> Result<Vec<Vec<f64>>, BlockError> {
+        // For each condition the values of each field, with the length of a list.
+        let mut all = Vec::new();
+        for condition in 0..conditions {
+            let mut parts = vec![Vec::new(); fields.len()];
+            for (field, part) in fields.iter().zip(&mut parts) {
+                if !field.store.is_coded() {
+                    self.field(field, condition, part)?;
+                }
+            }
+            all.push(parts);
+        }
+        let bytes = std::mem::take(&mut self.bytes);
+        let coded = coded::decode(&coded_lists(fields), conditions, bytes, &mut self.left);
+        let coded = coded.map_err(|error| match error {
+            CodeError::Invalid => BlockError::Coded,
+            CodeError::TooMany => BlockError::TooMany(self.limit),
+        })?;
+        for (parts, steps_of_fields) in all.iter_mut().zip(coded) {
+            let mut steps_of_fields = steps_of_fields.into_iter();
+            for (field, part) in fields.iter().zip(parts) {
+                let StoredAs::Coded(steps) = field.store else {
+                    continue;
+                };
+                let own = steps_of_fields.next().unwrap_or_default();
+                if field.list {
+                    part.push(own.len() as f64);
+                }
+                part.extend(own.into_iter().map(|q| steps.value(q.into())));
+            }
+        }
+        Ok(all.into_iter().map(|parts| parts.concat()).collect())
+    }
+
+    /// Reads a field that is not coded.
+    fn field(
+        &mut self,
+        field: &StoredField,
+        condition: usize,
+        flat: &mut Vec<f64>,
+    ) -> Result<(), BlockError> {
+        let count = if field.list { self.length(field, condition)? } else { 1 };
+        if field.list {
+            flat.push(count as f64);
+        }
+        // Counted before anything is read: a packed step takes as little as one bit in the file
+        // and eight bytes in memory.
+        self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
+        if let StoredAs::Packed(steps) = field.store {
+            let all = self.steps(field, condition, count)?;
+            flat.extend(all.into_iter().map(|q| steps.value(q.into())));
+            return Ok(());
+        }
+        for index in 0..count {
+            let value = self.number(field.store).ok_or_else(|| truncated(field, condition))?;
+            if !value.is_finite() {
+                return Err(BlockError::NotFinite { field: field.name.clone(), condition, index });
+            }
+            flat.push(value);
+        }
+        Ok(())
     }
 
     /// Reads the steps of a packed list. Their values are finite, because the manifest check has
@@ -401,7 +488,9 @@ impl Reader<'_> {
             StoredAs::F64 => Number::F64(self.decode()?),
             StoredAs::F32 => Number::F32(self.decode()?),
             StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.decode()?)),
-            StoredAs::U8(_) | StoredAs::Packed(_) => Number::U8(self.decode()?),
+            StoredAs::U8(_) | StoredAs::Packed(_) | StoredAs::Coded(_) => {
+                Number::U8(self.decode()?)
+            }
         };
         Some(value_of(number, store))
     }
@@ -414,14 +503,14 @@ impl Reader<'_> {
 }
 
 impl StoredAs {
-    /// Returns the size of a stored number in bytes. For a packed list this is the size of an
-    /// unpacked step, because a packed number has no fixed size.
+    /// Returns the size of a stored number in bytes. For packed and coded fields this is the size
+    /// of a step, because their numbers have no fixed size.
     fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
             Self::F32 => 4,
             Self::U16(_) => 2,
-            Self::U8(_) | Self::Packed(_) => 1,
+            Self::U8(_) | Self::Packed(_) | Self::Coded(_) => 1,
         }
     }
 }

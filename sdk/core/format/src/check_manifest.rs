@@ -10,7 +10,7 @@ use crate::license::check_license;
 use htex_model::Band;
 
 use crate::law::{Law, MOST_EXPONENT};
-use crate::manifest::{Condition, Manifest};
+use crate::manifest::{CODED, Condition, Manifest};
 use crate::rules as rule;
 use htex_base::finding::Findings;
 use htex_base::finding::escape;
@@ -162,6 +162,9 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
         }
     }
     for (i, name) in manifest.extensions_required.iter().enumerate() {
+        if name == CODED {
+            continue;
+        }
         let pointer = format!("/extensions_required/{i}");
         let message = format!("the asset needs {name:?}, which this reader does not know");
         findings.add(rule::EXTENSION_REQUIRED_UNKNOWN, pointer, message);

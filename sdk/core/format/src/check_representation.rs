@@ -34,7 +34,7 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
             || format!("two representations are of model {model:?}; merge them"),
         );
         check_model(representation, at, findings);
-        check_fields(representation, at, findings);
+        check_fields(representation, manifest.is_coded(), at, findings);
         check_conditions(representation, manifest, at, findings);
         if let Err(error) = check_triangles_of(representation, &manifest.conditions) {
             let triangle = error.triangle().map(|i| format!("/{i}")).unwrap_or_default();
@@ -88,7 +88,12 @@ fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mu
     });
 }
 
-fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {
+fn check_fields(
+    representation: &Representation,
+    is_coded: bool,
+    at: Arguments<'_>,
+    findings: &mut Findings,
+) {
     let mut names = BTreeSet::new();
     for (i, field) in representation.fields.iter().enumerate() {
         let at = format_args!("{at}/fields/{i}");
@@ -110,10 +115,12 @@ fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &m
             StoredAs::U16(steps) => steps.are_valid(u16::MAX),
             StoredAs::U8(steps) => steps.are_valid(u8::MAX.into()),
             StoredAs::Packed(steps) => field.list && steps.are_valid(u8::MAX.into()),
+            StoredAs::Coded(steps) => is_coded && steps.are_valid(u8::MAX.into()),
         };
         findings.require(valid, rule::STORE_INVALID, format_args!("{at}/store"), || {
             "the steps are invalid: scale is not above 0, a step's value is not finite (with log: \
-             below 2^-1022), scale is too small for the offset, or a scalar is packed"
+             below 2^-1022), scale is too small for the offset, a scalar is packed, or a field is coded \
+             in an asset that does not require org.htex.coded/1"
                 .to_owned()
         });
     }

@@ -23,6 +23,8 @@ mod block;
 mod check_manifest;
 mod check_plugins;
 mod check_representation;
+mod coded;
+mod coding;
 mod container;
 mod document;
 mod doi;
@@ -45,11 +47,13 @@ mod plugin;
 mod quality;
 mod quality_json;
 mod quantity;
+mod range_coder;
 mod rights;
 mod rounding;
 mod rules;
 mod schema_words;
 mod stages;
+mod table;
 mod triangles;
 mod typed;
 mod unpack;
@@ -77,7 +81,7 @@ pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,
+    AtCondition, CODED, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,
     Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
 };
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};

@@ -27,6 +27,9 @@ pub const VERSION: &str = "1.1";
 /// All versions that this crate writes, from the lowest on.
 const VERSIONS: [&str; 2] = ["1.0", VERSION];
 
+/// The extension that a coded asset requires: coded fields, and tables of conditions.
+pub const CODED: &str = "org.htex.coded/1";
+
 /// The manifest of an asset: the metadata of one surface and its models.
 ///
 /// ```no_run
@@ -129,8 +132,8 @@ impl Manifest {
         if !VERSIONS.contains(&&*self.htex) {
             return self.htex.clone();
         }
-        let since_1_1 =
-            self.conditions.iter().any(|c| c.repeatability_third_octave_rms_db.is_some());
+        let since_1_1 = self.is_coded()
+            || self.conditions.iter().any(|c| c.repeatability_third_octave_rms_db.is_some());
         VERSIONS[usize::from(since_1_1)].to_owned()
     }
 
@@ -376,6 +379,9 @@ pub enum StoredAs {
     /// List of unsigned 8-bit integers `q`, stored as the differences between neighbours. Small
     /// differences take fewer bits.
     Packed(Steps),
+    /// Unsigned 8-bit integers `q`, predicted from the condition before and stored in a range code.
+    /// Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
+    Coded(Steps),
 }
 
 /// Step size and offset of an integer storage.
@@ -395,6 +401,10 @@ pub struct Steps {
 impl StoredAs {
     fn is_f64(&self) -> bool {
         *self == Self::F64
+    }
+
+    pub(crate) fn is_coded(&self) -> bool {
+        matches!(self, Self::Coded(_))
     }
 }
 

@@ -5,6 +5,7 @@ use serde_json::Value;
 use crate::document::{Document, DocumentRules};
 use crate::limits::Limits;
 use crate::rules as rule;
+use crate::table::expand_tables;
 use crate::{Manifest, Quantity, VERSION};
 use htex_base::finding::Findings;
 use htex_base::finding::escape;
@@ -29,7 +30,12 @@ const DOCUMENT: Document = Document {
 
 /// Parses a manifest. If that fails, adds a finding that says why and returns `None`.
 pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Manifest> {
-    let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    let mut opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    if let Err((pointer, problem)) = expand_tables(&mut opened.value) {
+        let message = format!("{problem}; correct the table or write an array of objects");
+        findings.add(rule::JSON_TYPE, pointer, message);
+        return None;
+    }
     check_quantity(&opened.value, findings)?;
     let (manifest, unknown) = DOCUMENT.typed::<Manifest>(&opened, findings)?;
     if !opened.newer {

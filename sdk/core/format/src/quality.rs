@@ -49,10 +49,6 @@ impl Measures {
         let entry = |measure: Measure| (measure.key(by), self.get(measure));
         KeyedMeasures(measures.into_iter().map(entry).collect())
     }
-
-    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut f64> {
-        self.0.iter_mut().flatten()
-    }
 }
 
 impl<const N: usize> From<[(Measure, f64); N]> for Measures {

@@ -1,48 +1,62 @@
 //! Rounding of the manifest's numbers when an asset is written.
 
 use crate::manifest::AtCondition;
-use crate::{Manifest, Quality};
+use crate::{Manifest, Measure, MeasureKind, Measures};
+
+/// Decimals of measures of agreement and of repeatability.
+const DECIMALS: usize = 4;
+/// Decimals of these numbers in a coded asset, where they would take most of the bytes. A hundredth
+/// of a decibel is a tenth of what measures of rendered samples vary by.
+const DECIMALS_CODED: usize = 2;
 
 impl Manifest {
     /// Returns the manifest as a writer stores it: with the lowest version that has its keys
-    /// ([`Self::lowest_version`]), measures of agreement and repeatability rounded to four decimals,
-    /// and levels to nine significant digits. Applying this twice changes nothing.
+    /// ([`Self::lowest_version`]), measures of agreement and repeatability rounded to four decimals
+    /// (in decibels to two if the asset is coded), and levels to nine significant digits. Applying
+    /// this twice changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         rounded.htex = self.lowest_version();
+        let decimals = if self.is_coded() { DECIMALS_CODED } else { DECIMALS };
         for condition in &mut rounded.conditions {
-            four_decimals(condition.repeatability_rms_db.iter_mut());
-            four_decimals(condition.repeatability_third_octave_rms_db.iter_mut());
+            round(condition.repeatability_rms_db.iter_mut(), decimals);
+            round(condition.repeatability_third_octave_rms_db.iter_mut(), decimals);
         }
         for representation in &mut rounded.representations {
-            representation.at.iter_mut().for_each(round_at);
+            representation.at.iter_mut().for_each(|at| round_at(at, decimals));
         }
         rounded
     }
 }
 
-fn round_at(at: &mut AtCondition) {
+fn round_at(at: &mut AtCondition, decimals: usize) {
     // Rounded by way of text: the nearest number to a decimal text stays the same when it is
     // rounded again, while multiplying and dividing by a power of ten would round twice more.
     at.level_rms = reread(&format!("{:.8e}", at.level_rms), at.level_rms);
     if let Some(quality) = &mut at.quality {
-        round_quality(quality);
+        round_measures(&mut quality.by_magnitude, decimals);
+        round_measures(&mut quality.by_samples, decimals);
+        round(quality.band_error_db.iter_mut(), decimals);
+        round(quality.rounding_error_db.iter_mut(), decimals);
     }
     if let Some(left_out) = &mut at.left_out {
-        four_decimals(left_out.0.iter_mut());
+        round_measures(&mut left_out.0, decimals);
     }
 }
 
-fn round_quality(quality: &mut Quality) {
-    four_decimals(quality.by_magnitude.iter_mut());
-    four_decimals(quality.by_samples.iter_mut());
-    four_decimals(quality.band_error_db.iter_mut());
-    four_decimals(quality.rounding_error_db.iter_mut());
+fn round_measures(measures: &mut Measures, decimals: usize) {
+    for measure in Measure::ALL {
+        let decimals = match measure.row().judged {
+            MeasureKind::Correlation => DECIMALS,
+            _ => decimals,
+        };
+        round(measures.get_mut(measure).iter_mut(), decimals);
+    }
 }
 
-fn four_decimals<'a>(numbers: impl Iterator<Item = &'a mut f64>) {
+fn round<'a>(numbers: impl Iterator<Item = &'a mut f64>, decimals: usize) {
     for number in numbers {
-        *number = reread(&format!("{number:.4}"), *number);
+        *number = reread(&format!("{number:.decimals$}"), *number);
     }
 }
 

@@ -106,7 +106,7 @@ htex_base::finding::rule_table! {
         "Flatten the extension, or raise `json_depth` if you trust the file.";
     JSON_TYPE Error [MANIFEST]:
         "A key is missing, appears twice, or has a value of the wrong type.",
-        "The manifest does not follow `schemas/manifest-1.json`.",
+        "The manifest does not follow `schemas/manifest-1.json`, or a table of a coded asset stands for no array.",
         "Correct it at the pointer.";
     JSON_UNKNOWN_KEY Warning [UNKNOWN_KEYS]:
         "A key does not exist in this version.",
@@ -229,9 +229,9 @@ htex_base::finding::rule_table! {
         "Only fields with a default in the model's descriptor, which a later minor version added, may be absent.",
         "Fit again.";
     STORE_INVALID Error [REPRESENTATIONS]:
-        "A store has invalid steps.",
-        "`scale` must be finite and above 0, the values of all steps finite and, in the logarithm, at least 2^-1022, and `scale` at least 2^-50 of the largest magnitude of o + s q (of 1, in the logarithm, if that is larger).",
-        "Correct `scale` and `offset`.";
+        "A store has invalid steps, or is not possible here.",
+        "`scale` must be finite and above 0, the values of all steps finite and, in the logarithm, at least 2^-1022, and `scale` at least 2^-50 of the largest magnitude of o + s q (of 1, in the logarithm, if that is larger). Only a list can be packed, and only a coded asset has coded fields.",
+        "Correct `scale` and `offset`, or choose another store.";
     AT_EMPTY Error [REPRESENTATIONS]:
         "A representation is not fitted at any condition.",
         "Without it there is nothing to play.",
@@ -262,7 +262,7 @@ htex_base::finding::rule_table! {
         "Use a separate entry, such as `parameters/NAME.bin`.";
     PARAMETERS_INVALID Error [BLOCKS]:
         "A parameter block does not match the fields.",
-        "It is too short, too long, or has a list length that is not in its shortest form.",
+        "It is too short, too long, or has a list length that is not in its shortest form, or a packed list or a code that a writer would not write.",
         "Write the asset again; fields, conditions and block must come from the same fit.";
     PARAMETERS_NOT_FINITE Error [BLOCKS]:
         "A parameter is not a finite number.",

@@ -16,6 +16,7 @@ use crate::limits::Limits;
 use crate::manifest_json::parse;
 use crate::plugin::WASM_MAGIC;
 use crate::rules as rule;
+use crate::table::expand_tables;
 use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
@@ -33,10 +34,13 @@ pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Re
     Report { valid: asset.is_some(), findings }
 }
 
-/// Returns an asset's manifest as JSON, even if the manifest is not valid. Returns `None` if the
-/// manifest cannot be unpacked or is not JSON.
+/// Returns an asset's manifest as JSON, even if the manifest is not valid. The tables of a coded
+/// asset are replaced by the arrays for which they stand. Returns `None` if the manifest cannot be
+/// unpacked or is not JSON, or if a table stands for no array.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
-    parse_json(&manifest_bytes(bytes, limits)?).ok()
+    let mut manifest = parse_json(&manifest_bytes(bytes, limits)?).ok()?;
+    expand_tables(&mut manifest).ok()?;
+    Some(manifest)
 }
 
 /// Returns the bytes of an asset's manifest, even if the manifest is not valid. Returns `None` if the

@@ -6,6 +6,7 @@ use crate::archive::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::check_manifest::check_manifest;
 use crate::check_manifest::grid_points;
 use crate::limits::Limits;
+use crate::table::write_tables;
 use crate::validate::inspect;
 use crate::zip_writer::ZipWriter;
 use crate::{Asset, WriteError, block, write_file};
@@ -15,7 +16,7 @@ impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
     ///
     /// Levels are rounded to nine significant digits, and the measures of agreement to four
-    /// decimals ([`crate::Manifest::rounded`]). Parameters are rounded to values that their fields
+    /// decimals, or to two if the asset is coded ([`crate::Manifest::rounded`]). Parameters are rounded to values that their fields
     /// can store ([`crate::round_parameters`]).
     ///
     /// # Errors
@@ -30,7 +31,14 @@ impl Asset {
             let findings = findings.into_list();
             return Err(WriteError::Invalid { findings });
         }
-        let json = serde_json::to_vec(&manifest).map_err(archive_error)?;
+        let json = if manifest.is_coded() {
+            let mut json = serde_json::to_value(&manifest).map_err(archive_error)?;
+            write_tables(&mut json);
+            serde_json::to_vec(&json)
+        } else {
+            serde_json::to_vec(&manifest)
+        };
+        let json = json.map_err(archive_error)?;
         let blocks = self.blocks()?;
         let reference = self.reference_entry()?;
         count("plugins", manifest.plugins.len(), self.plugins.len())?;

@@ -128,7 +128,7 @@ fn assemble(
         asset.reference = Some(spectra.iter().map(to_f32).collect());
     }
     FittedAsset {
-        asset,
+        asset: request.coding.of(asset),
         fit_ms,
         skipped: fitted.skipped,
         spectra,

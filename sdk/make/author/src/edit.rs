@@ -32,8 +32,9 @@ fn lost(bytes: &[u8], limits: &Limits, asset: &Asset, findings: &[Finding]) -> V
     let read = htex_format::manifest_bytes(bytes, limits).unwrap_or_default();
     // A manifest that this program wrote has the same bytes, and loses nothing.
     if read != written {
-        let json = |text: &[u8]| htex_format::parse_json(text).unwrap_or_default();
-        lost_keys(&json(&read), &json(&written), "", &mut lost);
+        let read = htex_format::manifest_json(bytes, limits).unwrap_or_default();
+        let written = htex_format::parse_json(&written).unwrap_or_default();
+        lost_keys(&read, &written, "", &mut lost);
     }
     lost
 }

@@ -51,6 +51,7 @@ mod asset;
 mod between;
 mod blocks;
 pub mod by_hand;
+mod coding;
 mod compare;
 mod conditions;
 mod describe;
@@ -82,6 +83,7 @@ pub mod tradeoff;
 
 pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
 pub use blocks::Repeatability;
+pub use coding::Coding;
 pub use compare::{ComparedModel, Difference, FeltDifference, compare};
 pub use conditions::RecordingFinding;
 pub use describe::{describe, played_model};

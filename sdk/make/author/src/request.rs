@@ -6,6 +6,7 @@ use htex_format::Contact;
 use htex_host::LoadedModel;
 
 use crate::SpectrumOptions;
+use crate::coding::Coding;
 use crate::grid::Grid;
 use crate::level::Level;
 use crate::settings::{GivenLaw, Metadata};
@@ -73,6 +74,8 @@ pub struct AssetRequest {
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
+    /// Whether the asset is coded.
+    pub coding: Coding,
     /// Whether to fit only the recorded conditions, and none that are computed from them.
     pub recorded_only: bool,
     /// Options whose values differ from their defaults, to be stored in the provenance.

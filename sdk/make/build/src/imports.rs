@@ -32,7 +32,7 @@ pub enum FileKind {
 
 /// Keys of recipes, and the import settings that they stand for. A key that is not listed here is
 /// not a setting of any import.
-const KEYS: [(&str, &str); 11] = [
+const KEYS: [(&str, &str); 12] = [
     ("full_scale", "full_scale"),
     ("pitch_mm", "pitch"),
     ("quantity", "quantity"),
@@ -43,6 +43,7 @@ const KEYS: [(&str, &str); 11] = [
     ("options", "option"),
     ("level", "level"),
     ("keep_reference", "keep_reference"),
+    ("storage", "storage"),
     ("grid", "grid"),
 ];
 /// Gates that apply to every texture. All other gates judge recordings and fits.

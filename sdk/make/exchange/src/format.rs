@@ -109,8 +109,17 @@ pub struct Naming<'a> {
 }
 
 /// Settings of imports that fit models to a signal.
-const FITTED: &[&str] =
-    &["full_scale", "quantity", "speed", "force", "model", "option", "level", "keep_reference"];
+const FITTED: &[&str] = &[
+    "full_scale",
+    "quantity",
+    "speed",
+    "force",
+    "model",
+    "option",
+    "level",
+    "keep_reference",
+    "storage",
+];
 /// Settings of image imports.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 /// Settings of image exports.

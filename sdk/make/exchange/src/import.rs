@@ -10,8 +10,8 @@
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
-    AssetRequest, AuthorError, Averaging, Exploration, FeltError, FittedAsset, Level, Recording,
-    SegmentChoice, Take, fit_asset,
+    AssetRequest, AuthorError, Averaging, Coding, Exploration, FeltError, FittedAsset, Level,
+    Recording, SegmentChoice, Take, fit_asset,
 };
 use htex_base::finding::{Hint, Notice};
 use htex_format::Rights;
@@ -145,6 +145,7 @@ impl Import<'_> {
             ("option", !fit.options.is_empty()),
             ("level", fit.level.is_some_and(|l| l != Level::default())),
             ("keep_reference", fit.keep_reference == Some(true)),
+            ("storage", fit.storage.is_some_and(|c| c != Coding::default())),
             ("grid", fit.grid.is_some()),
         ];
         let given = all.into_iter().filter(|(_, is_given)| *is_given);

@@ -30,6 +30,7 @@ class FitSettings(TypedDict, total=False):
     preset: Annotated[Literal["paper"] | None, "Several settings at once. `paper`: the paper's five models, sweeps, averaged magnitudes, and the paper's choice for every option (docs/paper.md). Other flags take precedence"]
     level: Annotated[Literal["fitted", "recording"] | None, "How strong a model plays. `recording`: as strong as the recording (its RMS in the frequency band). `fitted`: as strong as the model's own fit. Bands always plays at the level of its fit, because it stores energies [default: recording]"]
     keep_reference: Annotated[bool | None, "Keep the recorded spectra in the asset. Each condition takes 788 bytes before compression"]
+    storage: Annotated[Literal["auto", "coded", "plain"] | None, "Whether to code the asset: the same texture in fewer bytes, which readers of version 1.0 of the format refuse. `auto`: only with more than eight conditions, and only if the file becomes smaller [default: auto]"]
     recorded_only: Annotated[bool | None, "Fit only the recorded conditions. Without this flag, htex adds computed conditions: between recorded speeds, if frequencies follow the speed; and at a third and three times the speed, if it is the only one and --contact is unknown"]
 
 

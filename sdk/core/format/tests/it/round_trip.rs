@@ -63,7 +63,9 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
 fn inside(store: StoredAs, place: f64, otherwise: f64) -> f64 {
     let (steps, last) = match store {
         StoredAs::U16(steps) => (steps, f64::from(u16::MAX)),
-        StoredAs::U8(steps) | StoredAs::Packed(steps) => (steps, f64::from(u8::MAX)),
+        StoredAs::U8(steps) | StoredAs::Packed(steps) | StoredAs::Coded(steps) => {
+            (steps, f64::from(u8::MAX))
+        }
         StoredAs::F64 | StoredAs::F32 => return otherwise * place,
     };
     let x = steps.offset + steps.scale * (place * last);
@@ -72,13 +74,13 @@ fn inside(store: StoredAs, place: f64, otherwise: f64) -> f64 {
 
 fn any_asset() -> impl Strategy<Value = Asset> {
     let words = ("\\PC{1,40}", prop::option::of("\\PC{0,40}"), "\\PC{0,20}", "[a-z]{1,9}");
-    let numbers = (0.0..1e4f64, number(), 0..=1u64 << 53, any::<bool>());
+    let numbers = (0.0..1e4f64, number(), 0..=1u64 << 53, any::<bool>(), any::<bool>());
     let parts =
         (1usize..4).prop_flat_map(|c| (Just(c), representation(0, c), representation(1, c)));
     (parts, words, numbers).prop_map(|((conditions, first, second), words, numbers)| {
         let mut asset = asset(conditions, vec![first, second]);
         let (name, author, tag, key) = words;
-        let (level, error, segments, extra) = numbers;
+        let (level, error, segments, extra, coded) = numbers;
         let manifest = &mut asset.manifest;
         manifest.name = format!("n{name}");
         manifest.author = author;
@@ -96,6 +98,9 @@ fn any_asset() -> impl Strategy<Value = Asset> {
             manifest.reference = Some(Reference { file: "reference.bin".to_owned() });
             asset.reference = Some(reference(conditions));
         }
+        if coded {
+            asset = asset.coded();
+        }
         asset.manifest = asset.manifest.rounded();
         asset
     })
@@ -110,6 +115,12 @@ proptest! {
         let read = Asset::from_bytes(&bytes).unwrap();
         prop_assert_eq!(&read, &asset);
         prop_assert_eq!(read.to_bytes().unwrap(), bytes);
+        if read.manifest.is_coded() {
+            let plain = Asset::from_bytes(&read.clone().plain().to_bytes().unwrap()).unwrap();
+            prop_assert_eq!(&plain.parameters, &read.parameters);
+            prop_assert_eq!(&plain.coded().parameters, &read.parameters);
+            return Ok(());
+        }
         for (i, representation) in read.manifest.representations.iter().enumerate() {
             let sizes = read.parameters[i].iter().map(|flat| stored_bytes(&representation.fields, flat).unwrap());
             prop_assert_eq!(sizes.sum::<usize>(), read.payload_bytes(i));

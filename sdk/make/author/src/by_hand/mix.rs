@@ -107,7 +107,12 @@ pub fn mix(
     let mut asset = new_asset(name, quantity, band, provenance, conditions, mixed);
     asset.manifest.contact = heavier.contact;
     asset.manifest.law = Some(heavier.law());
-    Ok(asset)
+    // A mixture of coded assets is coded too. Any other can be read wherever its parts can.
+    Ok(if a.asset.manifest().is_coded() && b.asset.manifest().is_coded() {
+        asset.coded()
+    } else {
+        asset
+    })
 }
 
 fn check(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<(), String> {

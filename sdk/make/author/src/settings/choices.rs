@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
 use super::Preset;
-use crate::{Averaging, Level, SegmentChoice};
+use crate::{Averaging, Coding, Level, SegmentChoice};
 
 macro_rules! choices {
     ($($choice:ty),*) => {$(
@@ -20,4 +20,4 @@ macro_rules! choices {
     )*};
 }
 
-choices!(Averaging, Level, Preset, SegmentChoice);
+choices!(Averaging, Coding, Level, Preset, SegmentChoice);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::setting::settings;
 use super::{OneOrMore, Preset, ReadingSettings, one_or_more};
-use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
+use crate::{AssetRequest, AuthorError, Coding, Grid, Level, ModelRequest};
 
 settings! {
     /// Settings for fitting models. A missing setting has its default.
@@ -80,6 +80,17 @@ settings! {
                     compression"
         ))]
         pub keep_reference: Option<bool>,
+
+        /// Whether the asset is coded: fewer bytes, but readers of version 1.0 of the format refuse
+        /// it.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            display_order = 6,
+            help = "Whether to code the asset: the same texture in fewer bytes, which readers of \
+                    version 1.0 of the format refuse. `auto`: only with more than eight \
+                    conditions, and only if the file becomes smaller [default: auto]"
+        ))]
+        pub storage: Option<Coding> = "storage",
 
         /// Whether to fit only the recorded conditions, and none that are computed from them.
         #[cfg_attr(feature = "clap", arg(
@@ -294,6 +305,7 @@ impl FitSettings {
             strict: self.strict.unwrap_or_default(),
             grid: grid.transpose()?,
             keep_reference: self.keep_reference.unwrap_or_default(),
+            coding: self.storage.unwrap_or_default(),
             recorded_only: self
                 .recorded_only
                 .unwrap_or(self.preset.is_some_and(Preset::recorded_only)),

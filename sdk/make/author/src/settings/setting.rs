@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use htex_format::{Contact, Quantity};
 
 use super::{GivenLaw, OptionSetting, Preset};
-use crate::{Averaging, Level, SegmentChoice};
+use crate::{Averaging, Coding, Level, SegmentChoice};
 
 /// A setting, which may be missing.
 pub(super) trait Setting {
@@ -98,6 +98,7 @@ recorded! {
     Contact: |_contact| None;
     GivenLaw: |_law| None;
     Preset: |preset| Some(preset.name().to_owned());
+    Coding: |_coding| None;
     Level: |level| unless_default(level, level.name());
 }
 

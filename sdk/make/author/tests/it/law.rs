@@ -210,7 +210,10 @@ fn one_speed_of_an_unknown_contact_is_tilted() {
             let [own, other] = [at(60.0), at(60.0 * ratio)].map(|of| of[1] / of[0]);
             let tilt_db = 20.0 * (other / own).log10();
             let expected_db = 20.0 * 0.28 * ratio.log10();
-            assert!((tilt_db - expected_db).abs() < tolerance_db, "{model}: {tilt_db}, {expected_db}");
+            assert!(
+                (tilt_db - expected_db).abs() < tolerance_db,
+                "{model}: {tilt_db}, {expected_db}"
+            );
         }
     }
 }

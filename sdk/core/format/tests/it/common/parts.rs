@@ -45,6 +45,22 @@ pub(super) fn with_packed(block: &[u8]) -> Vec<u8> {
     archive(&parts(manifest.to_string().as_bytes(), block))
 }
 
+/// A coded asset of version 1.1 with two conditions, whose parameter block is one coded list. The
+/// conditions are a table.
+pub(super) fn with_coded(block: &[u8], change: impl Fn(&mut Value)) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["htex"] = json!("1.1");
+    manifest["extensions_required"] = json!(["org.htex.coded/1"]);
+    manifest["conditions"] = json!({ "columns": { "force_n": { "per": 100, "rows": [1], "values": [50] }, "speed_mm_s": [40, 80] } });
+    let representation = &mut manifest["representations"][0];
+    representation["model"] = json!("org.example.steps");
+    representation["fields"] =
+        json!([{ "name": "steps", "list": true, "store": { "coded": { "scale": 1 } } }]);
+    representation["at"] = json!({ "columns": { "level_rms": [0.01, 0.02] } });
+    change(&mut manifest);
+    archive(&parts(manifest.to_string().as_bytes(), block))
+}
+
 pub(super) fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
     let mut parts = parts(manifest().to_string().as_bytes(), &block());
     change(&mut parts);

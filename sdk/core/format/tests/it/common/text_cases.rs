@@ -1,7 +1,20 @@
 //! Manifests and parameter blocks that differ in single bytes.
 
 use super::cases::Named;
-use super::parts::{block, manifest, with_block, with_packed, with_text};
+use serde_json::{Value, json};
+
+use super::parts::{block, manifest, with_block, with_coded, with_packed, with_text};
+
+/// The code of the specification's example.
+const CODE: &[u8] = &[0xFF, 0xFF, 0xFB, 0x76, 0x57, 0x42, 0xB5];
+
+/// Takes the extension, and the tables, away from a coded asset.
+fn plain(manifest: &mut Value) {
+    manifest["extensions_required"] = json!([]);
+    manifest["conditions"] = json!([{ "speed_mm_s": 40 }, { "speed_mm_s": 80 }]);
+    manifest["representations"][0]["at"] =
+        json!([{ "condition": 0, "level_rms": 0.01 }, { "condition": 1, "level_rms": 0.02 }]);
+}
 
 pub(super) fn texts() -> Vec<Named> {
     let text = manifest().to_string();
@@ -32,6 +45,36 @@ pub(super) fn texts() -> Vec<Named> {
         ("parameters_invalid_short", with_block(&block()[..7])),
         ("parameters_invalid_long", with_block(&[0; 9])),
         ("parameters_invalid_packed", with_packed(&[1, 0x1F, 0xE1])),
+        ("valid_coded_table", with_coded(CODE, |_| ())),
+        ("parameters_invalid_coded_long", with_coded(&[CODE, &[0]].concat(), |_| ())),
+        ("parameters_invalid_coded_step", with_coded(&[0xFF; 40], |_| ())),
+        ("parameters_invalid_coded_form", with_coded(&[CODE, &[1]].concat(), |_| ())),
+        ("store_invalid_coded", with_coded(CODE, plain)),
+        (
+            "json_type_table_rows",
+            with_coded(CODE, |m| m["conditions"]["columns"]["force_n"]["rows"] = json!([2])),
+        ),
+        (
+            "json_type_table_column",
+            with_coded(CODE, |m| m["representations"][0]["at"]["columns"]["quality"] = json!([{}])),
+        ),
+        (
+            "json_type_table_per",
+            with_coded(CODE, |m| m["conditions"]["columns"]["force_n"]["per"] = json!(0)),
+        ),
+        (
+            "json_type_table_in_plain",
+            with_coded(CODE, |m| {
+                plain(m);
+                m["conditions"] = json!({ "columns": { "speed_mm_s": [40, 80] } });
+            }),
+        ),
+        (
+            "level_invalid_in_table",
+            with_coded(CODE, |m| {
+                m["representations"][0]["at"]["columns"]["level_rms"] = json!([0.01, -0.02]);
+            }),
+        ),
         ("parameters_not_finite", with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0])),
     ]
 }

@@ -1,6 +1,6 @@
 //! Valid assets.
 
-use htex_format::{Quantity, Reference};
+use htex_format::{Asset, Measure, Quantity, Reference};
 use serde_json::json;
 
 use super::cases::Named;
@@ -22,6 +22,7 @@ pub(super) fn valid() -> Vec<Named> {
         ("valid_five_models", asset(1, five(1)).to_bytes().unwrap()),
         ("valid_conditions", asset(3, five(3)).to_bytes().unwrap()),
         ("valid_packed", asset(2, vec![bands(2)]).to_bytes().unwrap()),
+        ("valid_coded", coded().to_bytes().unwrap()),
         ("valid_reference", with_reference.to_bytes().unwrap()),
         ("valid_plugin", with_plugin(|_| ())),
         ("valid_extension", extended.to_bytes().unwrap()),
@@ -107,6 +108,19 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
     ]
+}
+
+/// A coded asset with several models. One field of a model is coded between others that are not,
+/// and the numbers of quality are not the same at all conditions.
+fn coded() -> Asset {
+    let mut models = five(12);
+    models.push(bands(12));
+    let mut asset = asset(12, models);
+    asset.manifest.representations[5].at[3].quality = None;
+    let quality = asset.manifest.representations[5].at[4].quality.as_mut().unwrap();
+    *quality.by_magnitude.get_mut(Measure::ThirdOctave) = None;
+    asset.manifest.conditions[7].force_n = None;
+    asset.coded()
 }
 
 /// An asset with another quantity.

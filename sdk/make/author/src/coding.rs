@@ -1,0 +1,57 @@
+//! Whether a fitted asset is coded: the same texture in fewer bytes, which readers of version 1.0
+//! refuse.
+
+use htex_format::Asset;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Number of conditions up to which an asset is not coded unless the user asks for it. Such an asset
+/// has few kilobytes, so it is worth more that every reader can open it.
+const MOST_PLAIN: usize = 8;
+
+/// Whether an asset is coded: the same texture in fewer bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Coding {
+    /// Coded if the asset has more than eight conditions and its file becomes smaller.
+    #[default]
+    Auto,
+    /// Always coded.
+    Coded,
+    /// Never coded, so that readers of version 1.0 can open the asset.
+    Plain,
+}
+
+impl Coding {
+    /// All choices, in the order of the command line's help.
+    pub const ALL: &[Self] = &[Self::Auto, Self::Coded, Self::Plain];
+
+    /// Returns the name used in recipes and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Coded => "coded",
+            Self::Plain => "plain",
+        }
+    }
+
+    /// Returns the asset, coded or not. Parameters and levels stay the same.
+    #[must_use]
+    pub fn of(self, asset: Asset) -> Asset {
+        match self {
+            Self::Coded => asset.coded(),
+            Self::Plain => asset.plain(),
+            Self::Auto => {
+                let plain = asset.plain();
+                if plain.manifest.conditions.len() <= MOST_PLAIN {
+                    return plain;
+                }
+                let coded = plain.clone().coded();
+                match (plain.to_bytes(), coded.to_bytes()) {
+                    (Ok(bytes), Ok(fewer)) if fewer.len() < bytes.len() => coded,
+                    _ => plain,
+                }
+            }
+        }
+    }
+}

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{show, shown, warn, write_file};
+use crate::output::{note, show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
@@ -129,6 +129,11 @@ impl Bake {
             )]);
         }
         warn_of_frequencies(&baked);
+        if let Some(fluctuation) = asset.manifest().fluctuation {
+            note(&[format!(
+                "the block plays stationary noise: the asset's fluctuation in time ({fluctuation}) is not in it"
+            )]);
+        }
         show(&BakeReport { output: &self.output, baked: &baked, rate_hz: self.rate }, self.json)
     }
 

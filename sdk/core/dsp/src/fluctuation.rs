@@ -159,8 +159,7 @@ pub fn envelope_excess(
     signal: &[f64],
     rate_hz: f64,
 ) -> Option<[Option<EnvelopeExcess>; EXCESS_BANDS]> {
-    if (signal.len() as f64) < LEAST_EXCESS_S * rate_hz || rate_hz < 256.0 || !rate_hz.is_finite()
-    {
+    if (signal.len() as f64) < LEAST_EXCESS_S * rate_hz || rate_hz < 256.0 || !rate_hz.is_finite() {
         return None;
     }
     let signal = middle(signal, rate_hz);

@@ -10,7 +10,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::{Fluctuation, Quantity};
 use crate::check_manifest::check_extension_name;
 use crate::error::MetadataError;
 use crate::law::{Contact, Law};
@@ -20,6 +19,7 @@ use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
 use crate::triangles::Triangle;
+use crate::{Fluctuation, Quantity};
 
 /// The newest version of the format that this crate reads and writes. An asset is written in the
 /// lowest version that has its keys ([`Manifest::lowest_version`]).

@@ -110,9 +110,9 @@ pub fn mix(
     let strength_db =
         |part: MixedAsset<'_>| part.asset.manifest().fluctuation.map_or([0.0; 2], |f| f.decibels());
     let (of_a, of_b) = (strength_db(a), strength_db(b));
-    asset.manifest.fluctuation = htex_format::Fluctuation::from_db([0, 1].map(|range| {
-        (1.0 - weight) * of_a[range] + weight * of_b[range]
-    }));
+    asset.manifest.fluctuation = htex_format::Fluctuation::from_db(
+        [0, 1].map(|range| (1.0 - weight) * of_a[range] + weight * of_b[range]),
+    );
     Ok(asset)
 }
 

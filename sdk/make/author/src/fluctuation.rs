@@ -43,6 +43,11 @@ const LEAST_ERRORS: f64 = 0.5;
 /// median of the bands predicts the other half of a recording less well (modulation spectrum: 4.14
 /// and 4.47 dB instead of 4.06 and 4.31), and so does what all third octaves share (4.80 and 4.40).
 ///
+/// The formula takes the variance of the envelope for the variance of its part of the logarithm.
+/// An exponential moves some of it to higher frequencies: noise that fluctuates by 4 dB slowly is
+/// found to do so by 3.3 dB slowly and 1.7 dB fast. Undoing this predicted the other halves less
+/// well (sounds: 4.19 instead of 4.06 dB).
+///
 /// Where speed or force were recorded, the level is divided by the texture's law first: a player
 /// applies the law itself.
 pub(crate) fn fluctuation_of_texture(

@@ -194,7 +194,11 @@ impl AssetSummary {
             }
         }
         writeln!(f, "contact: {}", contact.name())?;
-        writeln!(f, "law outside the recorded motions: {}", self.law)
+        writeln!(f, "law outside the recorded motions: {}", self.law)?;
+        match self.manifest.fluctuation {
+            Some(fluctuation) => writeln!(f, "fluctuation in time: {fluctuation}"),
+            None => Ok(()),
+        }
     }
 
     /// Lists the level, the measures and the parameters of each representation at each condition.

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::output::{show, shown, warn, write_file};
+use crate::output::{note, show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
@@ -64,6 +64,12 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
+    /// Also store the fluctuation in time that the asset states (`htex info`): the player makes the
+    /// texture stronger and weaker, with the same mean level. Nobody has felt yet whether this makes
+    /// a texture more real
+    #[arg(long)]
+    fluctuation: bool,
+
     #[command(flatten)]
     player: PlayerArgs,
 
@@ -101,7 +107,9 @@ impl Bake {
             None => Grid::for_default_condition(representation).map_err(for_file(&self.asset))?,
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
-        let limits = BakeLimits::within_db(self.within).with_longest(longest);
+        let limits = BakeLimits::within_db(self.within)
+            .with_longest(longest)
+            .with_fluctuation(self.fluctuation);
         let baked = htex_play::bake::bake(representation, &grid, self.rate, limits)
             .map_err(for_file(&self.asset))?;
         let rights = match format {
@@ -129,6 +137,18 @@ impl Bake {
             )]);
         }
         warn_of_frequencies(&baked);
+        match (asset.manifest().fluctuation, baked.fluctuation) {
+            (Some(fluctuation), None) => note(&[format!(
+                "the block plays stationary noise: the asset's fluctuation in time ({fluctuation}) is not in it \
+                 (see --fluctuation)"
+            )]),
+            (None, _) if self.fluctuation => {
+                note(
+                    &["the asset states no fluctuation in time, so the block has none".to_owned()],
+                );
+            }
+            _ => {}
+        }
         show(&BakeReport { output: &self.output, baked: &baked, rate_hz: self.rate }, self.json)
     }
 
@@ -284,6 +304,7 @@ impl Serialize for BakeReport<'_> {
                 "level_speed": baked.law.level_speed,
                 "level_force": baked.law.level_force,
             },
+            "fluctuation": baked.fluctuation,
             "ceiling": baked.ceiling,
             "error_at_conditions_db": baked.at_conditions_db,
             "error_between_db": baked.between_db,

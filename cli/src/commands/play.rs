@@ -4,7 +4,7 @@ use clap::Args;
 use clap::builder::{Resettable, StyledStr};
 use htex_device::Status;
 use htex_device_builtin::SOUND;
-use htex_scene::file::Motion;
+use htex_scene::file::{Effect, Motion, Switch};
 use htex_scene::{DeviceOverride, Plan, Renderer};
 
 use crate::devices::{DeviceArgs, built_with};
@@ -47,6 +47,12 @@ pub(crate) struct Play {
     /// Use the gain of --person that `htex gain --texture` stored under this name
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
+
+    /// Make textures stronger and weaker in time, as their recordings were, if the assets state how
+    /// much. Their mean level stays the same. Nobody has felt yet whether this makes a texture more
+    /// real
+    #[arg(long)]
+    fluctuation: bool,
 
     #[command(flatten)]
     felt: FeltArgs,
@@ -107,6 +113,9 @@ impl Play {
                 return Err(Failure::usage("the scene's motion is live; give it with --motion -"));
             }
             _ => {}
+        }
+        if self.fluctuation {
+            ready.scene.file.effects.insert(Effect::Fluctuation, Switch::On);
         }
         self.felt.apply(&mut ready)?;
         if let Some(person) = &self.person {

@@ -42,6 +42,12 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
+    /// Make the texture stronger and weaker in time, as its recording was, if the asset states how
+    /// much (`htex info`). Its mean level stays the same. Nobody has felt yet whether this makes a
+    /// texture more real
+    #[arg(long)]
+    fluctuation: bool,
+
     /// Duration, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
     seconds: f64,
@@ -85,6 +91,7 @@ impl Synth {
             .with_motion(self.choice.motion(&asset).map_err(for_file(&self.asset))?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
+            .with_fluctuation(self.fluctuation)
             .with_effects(effects);
         let beyond = self.choice.beyond(&asset, effects).map_err(for_file(&self.asset))?;
         warn(&Vec::from_iter(beyond));

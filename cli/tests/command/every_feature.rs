@@ -7,14 +7,15 @@ use std::process::Stdio;
 use std::sync::LazyLock;
 
 use crate::common::{Files, Place, Run, entries};
-use htex_format::Asset;
+use htex_format::{Asset, Fluctuation};
 use serde_json::json;
 
 const COMPAT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/compat/0.2.0");
 
 /// One condition, four, a filter with zeros, a friction map, an embedded module, a mixture; three
-/// speeds with computed conditions, the same without measures, and with a silent first condition.
-const FILES: [&str; 9] = [
+/// speeds with computed conditions, the same without measures, with a silent first condition, and with a
+/// fluctuation in time.
+const FILES: [&str; 10] = [
     "one.htex",
     "grid.htex",
     "arma.htex",
@@ -24,6 +25,7 @@ const FILES: [&str; 9] = [
     "three.htex",
     "unmeasured.htex",
     "silent.htex",
+    "fluctuating.htex",
 ];
 
 /// What may be refused, with the reason: a file, a command and words of its error.
@@ -64,6 +66,9 @@ fn files() -> Files {
         representation.at.iter_mut().for_each(|at| at.quality = None);
     }
     place.write("unmeasured.htex", unmeasured.to_bytes().unwrap());
+    let mut fluctuating = three.clone();
+    fluctuating.manifest.fluctuation = Some(Fluctuation { slow: 112, fast: 71 });
+    place.write("fluctuating.htex", fluctuating.to_bytes().unwrap());
     let mut silent = three;
     let first = silent.manifest.representations[0].at[0].condition;
     silent.manifest.conditions[first].speed_mm_s = Some(0.0);
@@ -73,7 +78,12 @@ fn files() -> Files {
     }
     place.write("silent.htex", silent.to_bytes().unwrap());
     for name in FILES {
-        place.scene(&format!("{name}.scene.json"), name, &json!({ "duration_s": 0.2 }));
+        let effects = match name {
+            "fluctuating.htex" => json!({ "fluctuation": "on" }),
+            _ => json!({}),
+        };
+        let more = json!({ "duration_s": 0.2, "effects": effects });
+        place.scene(&format!("{name}.scene.json"), name, &more);
     }
     place.files()
 }
@@ -86,6 +96,7 @@ const COMMANDS: &[&[&str]] = &[
     &["spectrum", "FILE", "--json"],
     &["spectrum", "FILE", "--speed", "500", "--force", "3"],
     &["synth", "FILE", "--seconds", "0.2", "-o", "out.wav"],
+    &["synth", "FILE", "--seconds", "0.2", "--fluctuation", "-o", "out.wav"],
     &["synth", "FILE", "--seconds", "0.2", "--quality", "loop", "-o", "out.wav"],
     &["synth", "FILE", "--seconds", "0.2", "--rate", "2000", "-o", "out.wav"],
     &["edit", "FILE", "--name", "Other", "-o", "out.htex"],
@@ -93,6 +104,17 @@ const COMMANDS: &[&[&str]] = &[
     &["bake", "FILE", "-o", "out.bin", "--json"],
     &["mix", "FILE", "one.htex", "--weight", "0.5", "-o", "out.htex"],
     &["play", "FILE", "--device", "file", "--set", "path=out.wav", "--seconds", "0.1"],
+    &[
+        "play",
+        "FILE",
+        "--fluctuation",
+        "--device",
+        "file",
+        "--set",
+        "path=out.wav",
+        "--seconds",
+        "0.1",
+    ],
     &["plan", "FILE.scene.json"],
     &["plan", "FILE.scene.json", "--measure"],
     &["render", "FILE.scene.json", "-o", "out.wav"],

@@ -23,6 +23,7 @@ mod every_feature;
 mod exchange;
 mod fit;
 mod flags;
+mod fluctuation;
 mod gain;
 mod grid;
 mod lab;

@@ -64,6 +64,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         finger: None,
         contact: Default::default(),
         law: None,
+        fluctuation: None,
         quantity: htex_format::Quantity::LateralForce,
         unit: htex_format::Quantity::LateralForce.unit().to_owned(),
         band: Band { low_hz: band.low_hz, high_hz: band.high_hz },

@@ -34,6 +34,7 @@ LOG = [bits(b) for b in (0x4038AA3B, 0x3F76384F, 0x3F13BB62, 0x3ED30BB2)]
 EXP = [bits(b) for b in (0x3F800000, 0x3F317218, 0x3E75FDF0, 0x3D635847, 0x3C1D955B, 0x3AAEC3FF, 0x39218489)]
 COS = [bits(b) for b in (0x40C90FDB, 0xC2255DE7, 0x42A335E3, 0xC2996966, 0x42283C1A)]
 LEAST_ENERGY, NOISE_SCALE, HOLD_S = bits(0x3089705F), bits(0x37DDB3B9), bits(0x3DCCCCCD)
+STRENGTH = bits(0x3B2A152D)
 
 
 @dataclass
@@ -58,6 +59,7 @@ class Block:
     filters: np.ndarray
     frequencies: np.ndarray
     amplitudes: np.ndarray
+    fluctuation: tuple | None
 
 
 def read_block(data: bytes) -> Block:
@@ -78,7 +80,7 @@ def read_block(data: bytes) -> Block:
     noise = kind == NOISE
     if not (
         kind in (NOISE, SINUSOIDS)
-        and flags in ((0,) if noise else (0, 1))
+        and flags in ((0, 2) if noise else (0, 1, 2, 3))
         and 100 <= rate <= 1e6
         and 1 <= u <= 64
         and (t == 0 if u == 1 else t % 4 == 0 and 4 <= t <= 64)
@@ -97,7 +99,8 @@ def read_block(data: bytes) -> Block:
     cells = s * f
     numbers = 4 * k + 2 * cells * k + 2 * k * (n + 1) if noise else 8 * cells * n
     parts = HEADER.size + 4 * (s + f + u * t + cells) + numbers
-    if length != parts + -parts % 4 + 4:
+    padded = parts + -parts % 4
+    if length != padded + (8 if flags & 2 else 0) + 4:
         raise Broken("length")
     at = HEADER.size
 
@@ -126,12 +129,18 @@ def read_block(data: bytes) -> Block:
         and within(scales, 0, 2.0**-24)
         and within(frequencies, 0, 0.5)
         and within(amplitudes, -64, 64)
-        and not any(data[parts : length - 4])
+        and not any(data[parts:padded])
     ):
         raise Broken("values")
+    fluctuation = None
+    if flags & 2:
+        period, slow, fast, offset = struct.unpack_from("<HBBf", data, padded)
+        if period == 0 or not -16 <= offset <= 16:
+            raise Broken("values")
+        fluctuation = (f32(period), f32(slow), f32(fast), f32(offset))
     return Block(
-        kind, bool(flags), f32(rate), u, n, g, (f32(a), f32(b), f32(c)), f32(ceiling), f32(p), speeds, forces,
-        rows, levels, scales, weights, filters, frequencies, amplitudes,
+        kind, bool(flags & 1), f32(rate), u, n, g, (f32(a), f32(b), f32(c)), f32(ceiling), f32(p), speeds, forces,
+        rows, levels, scales, weights, filters, frequencies, amplitudes, fluctuation,
     )  # fmt: skip
 
 
@@ -201,6 +210,36 @@ class Random:
         return f32((x & 0xFFFF) + (x >> 16) + (y & 0xFFFF) + (y >> 16) - 131070) * NOISE_SCALE
 
 
+class Envelope:
+    """The fluctuation."""
+
+    def __init__(self, fluctuation: tuple, rate: np.float32, seed: int):
+        self.period, slow, fast, self.offset = fluctuation
+        self.strength = (slow * STRENGTH, fast * STRENGTH)
+        random, d = Random(seed ^ 0x666C7563), self.period / rate
+        self.phases, self.advance = np.zeros((2, 8), np.uint32), np.zeros((2, 8), np.uint32)
+        for part, (low, width) in enumerate(((0.5, 0.9375), (8, 3))):
+            for i in range(8):
+                u = f32(random.next() >> 8) * f32(2.0**-24)
+                f = f32(low) + f32(width) * (f32(i) + u)
+                self.advance[part, i] = advance_of(f * d)
+                self.phases[part, i] = random.next()
+        self.values, self.count = [self.next(), self.next()], 0
+
+    def next(self) -> np.float32:
+        slow, fast = (in_order(row) for row in cosine(self.phases))
+        self.phases = self.phases + self.advance
+        return exp2(self.offset + self.strength[0] * slow + self.strength[1] * fast)
+
+    def factor(self) -> np.float32:
+        if self.count == self.period:
+            self.values, self.count = [self.values[1], self.next()], 0
+        a, b = self.values
+        part = f32(self.count) / self.period
+        self.count += 1
+        return a + (b - a) * part
+
+
 class Player:
     """Section 3. `values` has a row of coefficients, or one of amplitudes and one of frequencies."""
 
@@ -219,6 +258,7 @@ class Player:
             self.history = np.array([self.random.noise() for _ in range(2 * block.count + 1)], f32)
         elif block.drawn:
             self.phases = np.array([self.random.next() for _ in range(block.count)], np.uint32)
+        self.envelope = block.fluctuation and Envelope(block.fluctuation, block.rate, seed)
         self.sound(block.speeds[0], block.forces[0])
 
     def read(self, v: np.float32, force: np.float32) -> None:
@@ -295,6 +335,10 @@ class Player:
             self.values = new
 
     def sample(self) -> np.float32:
+        sample = self.steady()
+        return sample * self.envelope.factor() if self.envelope else sample
+
+    def steady(self) -> np.float32:
         if self.held:
             if self.held_left == 0:
                 self.fade()
@@ -323,9 +367,12 @@ class Player:
             return values[0] * self.history[n] + lanes(values[1:], pairs)
         amplitudes, frequencies = self.values
         result = in_order(amplitudes * cosine(self.phases))
-        advance = np.clip(np.trunc((frequencies * f32(2.0**32)).astype(np.float64)), 0, WORD).astype(np.uint32)
-        self.phases = self.phases + advance
+        self.phases = self.phases + advance_of(frequencies)
         return result
+
+
+def advance_of(frequencies):
+    return np.clip(np.trunc((frequencies * f32(2.0**32)).astype(np.float64)), 0, WORD).astype(np.uint32)
 
 
 def place(axis: np.ndarray, value: np.float32) -> tuple[int, np.float32]:

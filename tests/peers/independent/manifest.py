@@ -124,6 +124,7 @@ MANIFEST = t.Object(
             )
         ),
         "law": t.Object({"frequency_speed*": EXPONENT, "level_speed*": EXPONENT, "level_force*": EXPONENT}),
+        "fluctuation": t.Object({"slow*": t.Integer(0, 255), "fast*": t.Integer(0, 255)}),
         "representations*": t.List(
             t.Object(
                 {

@@ -8,7 +8,7 @@ from .jsontext import parse
 from .manifest import check_version
 
 EFFECTS = (
-    "interpolation frequency_scaling level_scaling crossfade compensation resampling direction gain square_root"
+    "interpolation frequency_scaling level_scaling fluctuation crossfade compensation resampling direction gain square_root"
     " contact carrier limiter dither quantisation"
 ).split()
 PAIR = t.List(t.Number(), 2)

@@ -345,7 +345,8 @@ impl Texture {
     /// Makes a voice, which plays the texture.
     #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
                         synthesis="streamed", *, x_mm=None, y_mm=None, frequency_scaling=true, level_scaling=true,
-                        contact=true, ceiling=4.0, gain=1.0, limit=None, envelope_bands=0))]
+                        contact=true, ceiling=4.0, gain=1.0, limit=None, envelope_bands=0,
+                        fluctuation=false))]
     #[allow(clippy::too_many_arguments)]
     fn voice(
         &self,
@@ -366,6 +367,7 @@ impl Texture {
         gain: f64,
         limit: Option<f64>,
         envelope_bands: usize,
+        fluctuation: bool,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
         let at = At { speed_mm_s, force_n };
@@ -387,6 +389,7 @@ impl Texture {
             .with_gain(gain)
             .with_limit(limit)
             .with_envelope_bands(envelope_bands)
+            .with_fluctuation(fluctuation)
             .with_effects(
                 Effects::default()
                     .with_frequency_scaling(frequency_scaling)

@@ -64,6 +64,11 @@ export interface Manifest {
   provenance?: Record<string, unknown>;
   conditions: ManifestCondition[];
   law?: Law;
+  /**
+   * How strongly the texture fluctuates in time: standard deviations at 0.5 to 8 and at 8 to 32 Hz,
+   * in steps of 1/32 dB (0 to 255).
+   */
+  fluctuation?: { slow: number; fast: number };
   representations: Representation[];
   reference?: Record<string, unknown>;
   /** Embedded models. */

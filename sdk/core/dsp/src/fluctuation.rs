@@ -77,10 +77,8 @@ impl Fluctuation {
         if (len as f64) < LEAST_S * rate_hz || rate_hz < 256.0 || !rate_hz.is_finite() {
             return None;
         }
-        let measured = len.min((MOST_S * rate_hz) as usize);
-        let from = (len - measured) / 2;
-        let axes: Vec<&[f64]> = axes.iter().map(|axis| &axis[from..from + measured]).collect();
-        let mut bands = Bands::new(&axes, measured, rate_hz);
+        let axes: Vec<&[f64]> = axes.iter().map(|axis| middle(&axis[..len], rate_hz)).collect();
+        let mut bands = Bands::new(&axes, axes[0].len(), rate_hz);
         let len = bands.len;
         let highest_hz = HIGHEST_HZ.min(OF_NYQUIST * 0.5 * rate_hz);
         let edge_hz = |k: usize| match k {
@@ -126,6 +124,73 @@ impl Fluctuation {
         let differences = pairs.chain(self.own_db.iter().zip(&other.own_db)).map(|(a, b)| a - b);
         rms(&differences.collect::<Vec<_>>())
     }
+}
+
+/// Ranges of modulation, hertz, in which [`envelope_excess`] sums what exceeds stationary noise.
+pub const EXCESS_HZ: [[f64; 2]; 2] = [[1.0, 8.0], [8.0, 32.0]];
+/// Shortest signal of [`envelope_excess`], seconds: the slowest modulation once.
+pub const LEAST_EXCESS_S: f64 = 1.0;
+/// Number of bands of [`envelope_excess`].
+pub const EXCESS_BANDS: usize = WIDE_HZ.len() - 1;
+
+/// How much the amplitude envelope of a band varies more than that of stationary Gaussian noise
+/// with the same spectrum. All numbers are variances relative to the square of the mean envelope.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EnvelopeExcess {
+    /// The measured variance less the expected one, in each range of [`EXCESS_HZ`]; may be below 0.
+    pub excess: [f64; 2],
+    /// The square of the standard error of `excess` for stationary Gaussian noise.
+    pub error: [f64; 2],
+    /// Power of the signal in the band, in the square of its unit.
+    pub power: f64,
+}
+
+/// Measures the excess in the bands from 20 to 60, 150, 400 and 1000 Hz. Bands above half the
+/// sample rate are `None`. Of a signal longer than [`MOST_S`], the middle is measured.
+///
+/// The expectation is exact for Gaussian noise that is periodic in the length of the signal. If ρ
+/// is the correlation of the band's analytic signal with itself at a delay, the envelopes at that
+/// delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of their mean
+/// (D. Middleton, 1948). So no random copies of the signal are needed.
+///
+/// `None` if the signal is shorter than [`LEAST_EXCESS_S`], silent, or not finite, or if half its
+/// sample rate is below 128 Hz.
+pub fn envelope_excess(
+    signal: &[f64],
+    rate_hz: f64,
+) -> Option<[Option<EnvelopeExcess>; EXCESS_BANDS]> {
+    if (signal.len() as f64) < LEAST_EXCESS_S * rate_hz || rate_hz < 256.0 || !rate_hz.is_finite() {
+        return None;
+    }
+    let signal = middle(signal, rate_hz);
+    let mut bands = Bands::new(&[signal], signal.len(), rate_hz);
+    let highest_hz = HIGHEST_HZ.min(OF_NYQUIST * 0.5 * rate_hz);
+    let mut found = [None; EXCESS_BANDS];
+    for (edges, found) in WIDE_HZ.windows(2).zip(&mut found) {
+        let band = [edges[0], edges[1].min(highest_hz)];
+        if band[0] < band[1] {
+            *found = Some(bands.excess(band)?);
+        }
+    }
+    Some(found)
+}
+
+/// The part of a signal that is measured.
+fn middle(signal: &[f64], rate_hz: f64) -> &[f64] {
+    let measured = signal.len().min((MOST_S * rate_hz) as usize);
+    let from = (signal.len() - measured) / 2;
+    &signal[from..from + measured]
+}
+
+/// `₂F₁(−½, −½; 1; u) − 1` for u from 0 to 1; the error is below 4e-5.
+fn envelope_covariance(u: f64) -> f64 {
+    let (mut coefficient, mut power, mut sum) = (1.0, 1.0, 0.0);
+    for n in 1..=32 {
+        coefficient *= (f64::from(n) - 1.5) / f64::from(n);
+        power *= u;
+        sum += coefficient * coefficient * power;
+    }
+    sum
 }
 
 /// The spectra of a signal's axes, from which bands are taken.
@@ -191,6 +256,61 @@ impl Bands {
             }
         }
         envelope
+    }
+
+    /// The excess of a band of the first axis; `None` if the band is silent or not finite.
+    fn excess(&mut self, band: [f64; 2]) -> Option<EnvelopeExcess> {
+        let len = self.len as f64;
+        let mut envelope = self.power_envelope(band);
+        let power = 0.5 * envelope.iter().sum::<f64>() / len;
+        envelope.iter_mut().for_each(|power| *power = crate::root::sqrt(*power));
+        let mean = envelope.iter().sum::<f64>() / len;
+        let mut covariance = self.correlation(band);
+        let most = covariance[0];
+        if !(power > 0.0 && mean > 0.0 && most > 0.0 && mean.is_finite() && most.is_finite()) {
+            return None;
+        }
+        // Rounding may raise the ratio above 1.
+        covariance.iter_mut().for_each(|u| *u = envelope_covariance((*u / most).min(1.0)));
+        envelope.iter_mut().for_each(|x| *x = *x / mean - 1.0);
+        let measured = self.forward(&envelope).map(|bin| 2.0 * bin.norm_sqr() / (len * len));
+        let measured: Vec<f64> = measured.collect();
+        let expected: Vec<f64> =
+            self.forward(&covariance).map(|bin| (2.0 * bin.re / len).max(0.0)).collect();
+        let mut found = EnvelopeExcess { power, ..EnvelopeExcess::default() };
+        for (range, [low, high]) in EXCESS_HZ.into_iter().enumerate() {
+            let inside = |k: &usize| (low..high).contains(&self.hertz(*k));
+            for k in (0..expected.len()).filter(inside) {
+                found.excess[range] += measured[k] - expected[k];
+                // The power of a bin of noise varies by its mean.
+                found.error[range] += expected[k] * expected[k];
+            }
+        }
+        Some(found)
+    }
+
+    /// The squared magnitude of the correlation of a band's analytic signal with itself, at each
+    /// delay.
+    fn correlation(&mut self, [low, high]: [f64; 2]) -> Vec<f64> {
+        let mut squared = alloc::vec![0.0; self.len];
+        let mut part = alloc::vec![0.0; self.len];
+        for turn in [Complex::ONE, -Complex::I] {
+            for k in 0..self.bins.len() {
+                let hz = self.hertz(k);
+                let is_inside = hz >= low && hz < high;
+                let power = if is_inside { self.axes[0][k].norm_sqr() } else { 0.0 };
+                self.bins[k] = turn * power;
+            }
+            self.fft.inverse(&self.bins, &mut part);
+            squared.iter_mut().zip(&part).for_each(|(sum, x)| *sum += x * x);
+        }
+        squared
+    }
+
+    /// The bins of a real signal.
+    fn forward(&mut self, signal: &[f64]) -> impl Iterator<Item = Complex<f64>> + '_ {
+        self.fft.forward(signal, &mut self.bins);
+        self.bins.iter().copied()
     }
 
     /// The power spectrum of an envelope without its mean, averaged over each octave.

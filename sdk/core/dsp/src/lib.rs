@@ -51,6 +51,7 @@ pub mod peaks;
 pub mod pipeline;
 mod polyphase;
 pub mod quad;
+pub mod random_envelope;
 mod random_lanes;
 pub mod reduced;
 pub mod resample;

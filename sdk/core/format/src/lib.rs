@@ -31,6 +31,7 @@ mod doi;
 mod entry_ranges;
 mod error;
 mod fields;
+mod fluctuation;
 mod json_text;
 mod law;
 #[cfg(feature = "library")]
@@ -73,6 +74,7 @@ pub use doi::check_doi;
 pub use entry_ranges::{EntryRange, entry_ranges};
 pub use error::{MetadataError, ReadError, WriteError};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
+pub use fluctuation::Fluctuation;
 pub use htex_base::files::{remove_unfinished, replace_file, write_file};
 pub use htex_base::finding::{FileReport, Finding, Report, Severity};
 pub use htex_model::Band;

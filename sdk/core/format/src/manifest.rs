@@ -10,7 +10,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::Quantity;
 use crate::check_manifest::check_extension_name;
 use crate::error::MetadataError;
 use crate::law::{Contact, Law};
@@ -20,6 +19,7 @@ use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
 use crate::triangles::Triangle;
+use crate::{Fluctuation, Quantity};
 
 /// The newest version of the format that this crate reads and writes. An asset is written in the
 /// lowest version that has its keys ([`Manifest::lowest_version`]).
@@ -96,6 +96,10 @@ pub struct Manifest {
     /// conditions. Without this key, the usual law for `contact` and `quantity` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
+    /// How strongly the texture becomes stronger and weaker in time. Without this key it does not.
+    /// From version 1.1 on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fluctuation: Option<Fluctuation>,
     /// The representations of the texture: each contains the parameters of one model.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub representations: Vec<Representation>,
@@ -133,6 +137,7 @@ impl Manifest {
             return self.htex.clone();
         }
         let since_1_1 = self.is_coded()
+            || self.fluctuation.is_some()
             || self.conditions.iter().any(|c| c.repeatability_third_octave_rms_db.is_some());
         VERSIONS[usize::from(since_1_1)].to_owned()
     }

@@ -13,6 +13,7 @@ use htex_host::LoadedModel;
 use crate::conditions::{ConditionSpectra, RecordingFinding};
 use crate::felt::FeltError;
 use crate::fit::{FittedModels, fit_models};
+use crate::fluctuation::fluctuation_of_texture;
 use crate::grid::{GridReport, GridSpectra};
 use crate::request::AssetRequest;
 use crate::take::{SegmentedTake, Take, segment_take};
@@ -85,7 +86,10 @@ pub fn fit_asset_watched(
         &request.alternatives,
         begins,
     )?;
-    Ok(assemble(request, conditions, grid, fitted))
+    let fluctuation = fluctuation_of_texture(takes, spectrum.segments, &conditions.law);
+    let mut fitted = assemble(request, conditions, grid, fitted);
+    fitted.asset.manifest.fluctuation = fluctuation;
+    Ok(fitted)
 }
 
 fn assemble(
@@ -170,6 +174,7 @@ pub fn new_asset(
         provenance,
         conditions,
         law: None,
+        fluctuation: None,
         representations,
         reference: None,
         plugins: Vec::new(),

@@ -25,12 +25,13 @@ pub struct VoiceOptions {
     pub(crate) gain: f64,
     pub(crate) limit: Option<f64>,
     pub(crate) envelope_bands: usize,
+    pub(crate) fluctuation: bool,
 }
 
 impl Default for VoiceOptions {
     /// The defaults: 20 kHz (the paper's rate), seed 0, the motion of the default condition,
     /// streamed synthesis, all effects, a ceiling of 4 times the strongest recorded level, a gain
-    /// of 1, no limit and no envelope.
+    /// of 1, no limit, no envelope and no fluctuation.
     fn default() -> Self {
         Self {
             rate_hz: 20_000.0,
@@ -42,6 +43,7 @@ impl Default for VoiceOptions {
             gain: 1.0,
             limit: None,
             envelope_bands: 0,
+            fluctuation: false,
         }
     }
 }
@@ -110,6 +112,16 @@ impl VoiceOptions {
     #[must_use]
     pub fn with_envelope_bands(mut self, bands: usize) -> Self {
         self.envelope_bands = bands;
+        self
+    }
+
+    /// Sets whether the texture becomes stronger and weaker in time as its recording did, if the
+    /// asset states how much ([`htex_format::Fluctuation`]). By default it does not, and the noise is
+    /// stationary. The mean square of the samples stays the same. Nobody has felt yet whether this
+    /// makes a texture more real. A [`SampleSource`](crate::SampleSource) ignores this option.
+    #[must_use]
+    pub fn with_fluctuation(mut self, fluctuation: bool) -> Self {
+        self.fluctuation = fluctuation;
         self
     }
 

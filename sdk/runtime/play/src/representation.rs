@@ -93,7 +93,8 @@ impl<'a> Representation<'a> {
         // The voice reads the source at `base` times its speed, so the source can run at a lower
         // rate.
         let source = self.source(&options.clone().with_rate_hz(options.rate_hz / base))?;
-        Voice::new(source, still, options, base)
+        let fluctuation = self.texture.manifest().fluctuation.filter(|_| options.fluctuation);
+        Voice::new(source, still, options, base, fluctuation)
     }
 
     /// Refuses a sample rate that is too low for the texture's frequencies.

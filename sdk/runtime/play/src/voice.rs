@@ -2,6 +2,8 @@
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::glide::Glide;
+use htex_dsp::random_envelope::RandomEnvelope;
+use htex_format::Fluctuation;
 use htex_host::{StillSound, Stream};
 
 use crate::envelope::{self, Envelope};
@@ -43,6 +45,7 @@ pub struct Voice {
     /// Pre-rendered audio. If present, the stream's source supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
+    fluctuation: Option<RandomEnvelope>,
     follow: Follow,
     /// The finger's position, for a model that follows the motion.
     travel: Option<Travel>,
@@ -64,12 +67,14 @@ pub struct Voice {
 
 impl Voice {
     /// Makes a voice from a source, or from a pre-rendered sound `still`. The voice reads the
-    /// source `base` times as fast as recorded.
+    /// source `base` times as fast as recorded. The texture has a `fluctuation` only if the options
+    /// ask for it.
     pub(crate) fn new(
         source: SampleSource,
         still: Option<StillSound>,
         options: &VoiceOptions,
         base: f64,
+        fluctuation: Option<Fluctuation>,
     ) -> Result<Self, Error> {
         let rate_hz = options.rate_hz;
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
@@ -96,6 +101,9 @@ impl Voice {
         let mut voice = Self {
             started: source.motion(),
             level_rms: Glide::new(level_rms as f32, ramp),
+            fluctuation: fluctuation
+                .filter(|fluctuation| !fluctuation.is_zero())
+                .map(|f| RandomEnvelope::new(f.decibels(), rate_hz, options.seed)),
             stream: Stream::from_source(source, source_rate_hz, rate_hz, top_hz, own_rate)?,
             still,
             follow,
@@ -249,6 +257,9 @@ impl Voice {
         if !sounding.is_empty() {
             result = self.render_shape(sounding);
             self.level_rms.apply(sounding);
+            if let Some(fluctuation) = &mut self.fluctuation {
+                fluctuation.apply(sounding);
+            }
             self.follow.apply_contact(sounding, self.frames);
             self.output.apply(sounding);
             self.played += sounding.len() as u64;

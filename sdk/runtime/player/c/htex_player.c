@@ -51,6 +51,11 @@ enum {
     NOISE = 1,
     TONES = 2,
     RANDOM_PHASE = 1,
+    FLUCTUATES = 2,
+    /* Length of the fluctuation in a block, bytes. */
+    FLUCTUATION = 8,
+    /* Sinusoids of each of the two parts of the envelope. */
+    LINES = 8,
     MOST_HALF = 320,
     MOST_TONES = 64,
     MOST_UP = 64,
@@ -72,6 +77,7 @@ enum {
 #define MOST_SPEED_MM_S 1000.0f
 #define LEAST_FORCE_N 1e-6f
 #define MOST_FORCE_N 20.0f
+#define MOST_OFFSET 16.0f
 #define HOLD_S 0.1f
 #define MIN_RATIO 0.0625f
 #define MAX_RATIO 8.0f
@@ -288,6 +294,8 @@ struct parts {
     const uint8_t *integers_at;
     uint32_t numbers;
     uint32_t integers;
+    /* The fluctuation, if the block has one. */
+    const uint8_t *fluctuation_at;
 };
 
 static struct parts parts_of(const uint8_t *block)
@@ -314,6 +322,7 @@ static struct parts parts_of(const uint8_t *block)
     parts.levels_at = parts.rows_at + 4u * parts.up * parts.row;
     parts.numbers_at = parts.levels_at + 4u * conditions;
     parts.integers_at = parts.numbers_at + 4u * parts.numbers;
+    parts.fluctuation_at = parts.integers_at + (parts.integers + 1u) / 2u * 4u;
     return parts;
 }
 
@@ -323,9 +332,10 @@ static int is_header(const uint8_t *block)
     uint32_t row = half_word(block + 18);
     uint32_t size = half_word(block + 20);
     uint32_t glide = half_word(block + 22);
-    int is_noise = block[6] == NOISE && block[7] == 0 && block[26] >= 1 && block[26] <= MOST_FILTERS && size % 4u == 0u
+    uint32_t flags = block[7] & (0xFFu - FLUCTUATES);
+    int is_noise = block[6] == NOISE && flags == 0u && block[26] >= 1 && block[26] <= MOST_FILTERS && size % 4u == 0u
         && size <= MOST_HALF;
-    int is_tones = block[6] == TONES && block[7] <= RANDOM_PHASE && block[26] == 0 && size <= MOST_TONES;
+    int is_tones = block[6] == TONES && flags <= RANDOM_PHASE && block[26] == 0 && size <= MOST_TONES;
     int is_interpolator = up == 1u ? row == 0u : row % 4u == 0u && row >= 4u && row <= MOST_ROW;
     float full_scale = number_at(block, 11);
     return (is_noise || is_tones) && is_interpolator && size > 0u && up >= 1u && up <= MOST_UP && glide >= 1u
@@ -365,7 +375,10 @@ static int are_values(const uint8_t *block, const struct parts *parts)
         : are_in(numbers, parts->numbers, 2, 0.0f, 0.5f) && are_in(numbers + 4, parts->numbers - 1u, 2, -MOST_VALUE, MOST_VALUE);
     const uint8_t *padding = parts->integers_at + 2u * parts->integers;
     int is_padding = parts->integers % 2u == 0u || (padding[0] == 0 && padding[1] == 0);
-    return are_sound && is_padding && are_in(parts->rows_at, parts->up * parts->row, 1, -MOST_VALUE, MOST_VALUE)
+    const uint8_t *fluctuation = parts->fluctuation_at;
+    int is_fluctuation = (block[7] & FLUCTUATES) == 0
+        || (half_word(fluctuation) > 0u && is_in(number_at(fluctuation, 1), -MOST_OFFSET, MOST_OFFSET));
+    return are_sound && is_padding && is_fluctuation && are_in(parts->rows_at, parts->up * parts->row, 1, -MOST_VALUE, MOST_VALUE)
         && are_in(parts->levels_at, parts->speeds * parts->forces, 1, 0.0f, MOST_LEVEL);
 }
 
@@ -393,7 +406,8 @@ static int check(const uint8_t *block, size_t length)
     }
     struct parts parts = parts_of(block);
     uint32_t words = parts.speeds + parts.forces + parts.up * parts.row + parts.speeds * parts.forces + parts.numbers;
-    if (stated != HEADER + 4u * words + (parts.integers + 1u) / 2u * 4u + CHECKSUM) {
+    uint32_t fluctuation = (block[7] & FLUCTUATES) != 0 ? FLUCTUATION : 0;
+    if (stated != HEADER + 4u * words + (parts.integers + 1u) / 2u * 4u + fluctuation + CHECKSUM) {
         return HTEX_PLAYER_LENGTH;
     }
     if (!is_axis(parts.speeds_at, parts.speeds, MIN_SLIDING_MM_S, MOST_SPEED_MM_S)
@@ -407,11 +421,12 @@ static int check(const uint8_t *block, size_t length)
 
 /* Number of values in memory after a player: the interpolator's coefficients and its history. Then
    for noise the filter's side, the side's steps and the history, or for sinusoids five numbers
-   each. In a history each input is stored twice, so that the newest ones are always contiguous. */
-static uint32_t numbers_needed(uint32_t kind, uint32_t size, uint32_t up, uint32_t row)
+   each. In a history each input is stored twice, so that the newest ones are always contiguous. Last,
+   for a block that fluctuates, phase and step of each sinusoid of its envelope. */
+static uint32_t numbers_needed(uint32_t kind, uint32_t flags, uint32_t size, uint32_t up, uint32_t row)
 {
-    uint32_t interpolator = up * row + 2u * row;
-    return interpolator + (kind == NOISE ? 2u * size + 2u * (2u * size + 1u) : 5u * size);
+    uint32_t others = up * row + 2u * row + ((flags & FLUCTUATES) != 0u ? 4u * LINES : 0u);
+    return others + (kind == NOISE ? 2u * size + 2u * (2u * size + 1u) : 5u * size);
 }
 
 static float *numbers_of(htex_player *player)
@@ -437,7 +452,7 @@ size_t htex_player_size(const uint8_t *block, size_t length)
     }
     struct parts parts = parts_of(block);
     /* At most 25 kB. */
-    return sizeof(htex_player) + sizeof(float) * (size_t)numbers_needed(block[6], parts.half_or_count, parts.up, parts.row);
+    return sizeof(htex_player) + sizeof(float) * (size_t)numbers_needed(block[6], block[7], parts.half_or_count, parts.up, parts.row);
 }
 
 /* ---- where a motion is in the grid ---- */
@@ -832,7 +847,7 @@ static float *end_of_tones(htex_player *player)
 static void start_tones(htex_player *player)
 {
     for (float *tone = own_of(player); tone != end_of_tones(player); tone += OF_TONE) {
-        uint32_t phase = player->block[7] == RANDOM_PHASE ? next_random(player->random) : 0;
+        uint32_t phase = (player->block[7] & RANDOM_PHASE) != 0 ? next_random(player->random) : 0;
         COPY(&tone[PHASE], &phase, sizeof phase);
     }
 }
@@ -987,6 +1002,67 @@ static void hold(htex_player *player)
     }
 }
 
+/* ---- the fluctuation in time ---- */
+
+/* The phases and steps of the sinusoids, as bits. */
+static float *lines_of(htex_player *player)
+{
+    return numbers_of(player) + player->lines_at;
+}
+
+/* The next value of the envelope. */
+APART static float next_value(htex_player *player)
+{
+    const uint8_t *stored = player->block + word(player->block + 8) - CHECKSUM - FLUCTUATION;
+    float *line = lines_of(player);
+    float sums[2] = {0.0f, 0.0f};
+    for (uint32_t i = 0; i < 2u * LINES; i++) {
+        uint32_t phase = bits_of(line[0]);
+        sums[i / LINES] += cosine(phase);
+        phase += bits_of(line[1]);
+        COPY(&line[0], &phase, sizeof phase);
+        line += 2;
+    }
+    float slow = (float)stored[2] * 0.0025952563f;
+    float fast = (float)stored[3] * 0.0025952563f;
+    return exp_2(number_at(stored, 1) + slow * sums[0] + fast * sums[1]);
+}
+
+static void start_envelope(htex_player *player, uint32_t seed)
+{
+    static const float low[2] = {0.5f, 8.0f};
+    static const float width[2] = {0.9375f, 3.0f};
+    uint32_t random[4];
+    float *line = lines_of(player);
+    player->envelope_period = half_word(player->block + word(player->block + 8) - CHECKSUM - FLUCTUATION);
+    float period = (float)player->envelope_period / player->rate_hz;
+    seed_random(random, seed ^ 0x666C7563u);
+    for (uint32_t i = 0; i < 2u * LINES; i++) {
+        float part = (float)(next_random(random) >> 8) * (1.0f / 16777216.0f);
+        float hertz = low[i / LINES] + width[i / LINES] * ((float)(i % LINES) + part);
+        uint32_t step = step_of(hertz * period);
+        uint32_t phase = next_random(random);
+        COPY(&line[0], &phase, sizeof phase);
+        COPY(&line[1], &step, sizeof step);
+        line += 2;
+    }
+    player->envelope_from = next_value(player);
+    player->envelope_to = next_value(player);
+}
+
+/* The factor of the next sample. */
+APART static float next_factor(htex_player *player)
+{
+    if (player->envelope_count == player->envelope_period) {
+        player->envelope_from = player->envelope_to;
+        player->envelope_to = next_value(player);
+        player->envelope_count = 0;
+    }
+    float part = (float)player->envelope_count / (float)player->envelope_period;
+    player->envelope_count++;
+    return player->envelope_from + (player->envelope_to - player->envelope_from) * part;
+}
+
 /* ---- samples ---- */
 
 /* Counts a sample of a motion that is held. After the last one the player becomes silent. */
@@ -1021,7 +1097,7 @@ APART static float next_input(htex_player *player)
     return player->kind == NOISE ? tick_noise(player) : tick_tones(player);
 }
 
-static inline float tick(htex_player *player)
+static inline float steady(htex_player *player)
 {
     uint32_t phase = player->phase;
     uint32_t row = player->row;
@@ -1037,6 +1113,12 @@ static inline float tick(htex_player *player)
     }
     player->phase = phase + 1u < player->up ? (uint16_t)(phase + 1u) : 0;
     return lanes(numbers_of(player) + phase * row, inputs_of(player) + player->next_input, row);
+}
+
+static inline float tick(htex_player *player)
+{
+    float sample = steady(player);
+    return player->envelope_period == 0u ? sample : sample * next_factor(player);
 }
 
 static int16_t integer_of(float sample, float gain)
@@ -1106,6 +1188,10 @@ static void start(htex_player *player, const uint8_t *block, uint32_t seed)
         start_noise(player);
     } else {
         start_tones(player);
+    }
+    if ((block[7] & FLUCTUATES) != 0) {
+        player->lines_at = (uint16_t)(numbers_needed(block[6], block[7], parts.half_or_count, parts.up, parts.row) - 4u * LINES);
+        start_envelope(player, seed);
     }
     sound(player, number_at(parts.speeds_at, 0), number_at(parts.forces_at, 0));
 }

@@ -23,6 +23,8 @@ typedef struct htex_player {
     float centre_step;
     float last_speed;
     float last_force;
+    float envelope_from;
+    float envelope_to;
     uint32_t random[4];
     uint32_t gliding;
     uint32_t held;
@@ -34,6 +36,9 @@ typedef struct htex_player {
     uint16_t next_input;
     uint16_t inputs_at;
     uint16_t own_at;
+    uint16_t lines_at;
+    uint16_t envelope_period;
+    uint16_t envelope_count;
     uint8_t kind;
     uint8_t quantity;
     uint8_t is_held;

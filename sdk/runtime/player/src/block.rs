@@ -3,10 +3,10 @@
 use crate::crc::crc32;
 use crate::law::{Factors, Law};
 use crate::layout::{
-    CHECKSUM, HEADER, HOLD_S, KIND_NOISE, KIND_TONES, LEAST_FORCE_N, MAGIC, MIN_SLIDING_MM_S,
-    MOST_CEILING, MOST_EXPONENT, MOST_FILTERS, MOST_FORCE_N, MOST_GLIDE, MOST_HALF, MOST_LEVEL,
-    MOST_ON_AXIS, MOST_ROW, MOST_SCALE, MOST_SPEED_MM_S, MOST_TONES, MOST_UP, MOST_VALUE,
-    RANDOM_PHASE, RATE_HZ, VERSION,
+    CHECKSUM, FLUCTUATES, FLUCTUATION, HEADER, HOLD_S, KIND_NOISE, KIND_TONES, LEAST_FORCE_N,
+    MAGIC, MIN_SLIDING_MM_S, MOST_CEILING, MOST_EXPONENT, MOST_FILTERS, MOST_FORCE_N, MOST_GLIDE,
+    MOST_HALF, MOST_LEVEL, MOST_OFFSET, MOST_ON_AXIS, MOST_ROW, MOST_SCALE, MOST_SPEED_MM_S,
+    MOST_TONES, MOST_UP, MOST_VALUE, RANDOM_PHASE, RATE_HZ, VERSION,
 };
 use crate::quantity::Quantity;
 use crate::weights::Weights;
@@ -98,6 +98,19 @@ pub struct Block<'a> {
     numbers: Words<'a>,
     /// For noise: the weights of the filters in each condition, and then the filters.
     integers: Integers<'a>,
+    fluctuation: Option<StoredFluctuation>,
+}
+
+/// How a texture becomes stronger and weaker in time, as a block stores it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StoredFluctuation {
+    /// Samples between two values of the envelope, from 1.
+    pub(crate) period: u16,
+    /// Standard deviations of the slow and the fast part of the envelope's logarithm, in steps of
+    /// 1/32 dB.
+    pub(crate) strength: [u8; 2],
+    /// Added to the logarithm so that the mean square is 1, octaves.
+    pub(crate) offset: f32,
 }
 
 /// What to play at a motion.
@@ -119,6 +132,8 @@ struct Parts {
     levels: usize,
     numbers: usize,
     integers: usize,
+    /// Length of the fluctuation at the end, bytes; 0 without one.
+    fluctuation: usize,
 }
 
 impl Parts {
@@ -129,6 +144,11 @@ impl Parts {
 
     /// Returns the length of all parts, bytes, padded with zeros to a multiple of four.
     fn bytes(&self) -> usize {
+        self.padded() + self.fluctuation
+    }
+
+    /// Returns the length without the fluctuation, bytes.
+    fn padded(&self) -> usize {
         4 * self.words() + (2 * self.integers).next_multiple_of(4)
     }
 }
@@ -172,7 +192,8 @@ impl<'a> Block<'a> {
     fn read_header(header: &[u8; HEADER]) -> Option<(Self, Parts)> {
         let size = usize::from(half_word(header, 20));
         let filters = usize::from(header[26]);
-        let kind = match (header[6], header[7], filters) {
+        let fluctuates = header[7] & FLUCTUATES != 0;
+        let kind = match (header[6], header[7] & !FLUCTUATES, filters) {
             (KIND_NOISE, 0, 1..=MOST_FILTERS) if size.is_multiple_of(4) && size <= MOST_HALF => {
                 BlockKind::Noise { half: size, filters }
             }
@@ -212,7 +233,15 @@ impl<'a> Block<'a> {
             BlockKind::Noise { half, filters } => (filters, filters * (conditions + half + 1)),
             BlockKind::Tones { count, .. } => (2 * count * conditions, 0),
         };
-        let parts = Parts { speeds, forces, rows: up * row, levels: conditions, numbers, integers };
+        let parts = Parts {
+            speeds,
+            forces,
+            rows: up * row,
+            levels: conditions,
+            numbers,
+            integers,
+            fluctuation: if fluctuates { FLUCTUATION } else { 0 },
+        };
         let none = Words::new(&[]);
         let block = Self {
             kind,
@@ -231,6 +260,7 @@ impl<'a> Block<'a> {
             levels: none,
             numbers: none,
             integers: Integers::new(&[]),
+            fluctuation: None,
         };
         in_range.then_some((block, parts))
     }
@@ -245,7 +275,13 @@ impl<'a> Block<'a> {
             part
         };
         let integers = payload.get(4 * parts.words()..).unwrap_or(&[]);
+        let end = payload.get(parts.padded()..).and_then(<[u8]>::first_chunk::<FLUCTUATION>);
         Self {
+            fluctuation: end.map(|end| StoredFluctuation {
+                period: u16::from_le_bytes([end[0], end[1]]),
+                strength: [end[2], end[3]],
+                offset: f32::from_le_bytes([end[4], end[5], end[6], end[7]]),
+            }),
             speeds: next(parts.speeds),
             forces: next(parts.forces),
             rows: next(parts.rows),
@@ -269,10 +305,13 @@ impl<'a> Block<'a> {
         }
         let values = -MOST_VALUE..=MOST_VALUE;
         let levels = 0.0..=MOST_LEVEL;
-        let end = payload.get(4 * parts.words() + 2 * parts.integers..);
+        let end = payload.get(4 * parts.words() + 2 * parts.integers..parts.padded());
+        let offsets = -MOST_OFFSET..=MOST_OFFSET;
+        let fluctuates = |f: StoredFluctuation| f.period > 0 && offsets.contains(&f.offset);
         let sound = self.rows.iter().all(|c| values.contains(&c))
             && self.levels.iter().all(|level| levels.contains(&level))
             && self.are_sound(self.numbers)
+            && self.fluctuation.is_none_or(fluctuates)
             && end.is_some_and(|zeros| zeros.iter().all(|zero| *zero == 0));
         if sound { Ok(self) } else { Err(OpenError::Values) }
     }
@@ -333,10 +372,22 @@ impl<'a> Block<'a> {
     /// `htex_player`.
     pub fn numbers(&self) -> usize {
         let interpolator = (self.up + 2) * self.row;
-        match self.kind {
-            BlockKind::Noise { half, .. } => interpolator + 2 * half + 2 * (2 * half + 1),
-            BlockKind::Tones { count, .. } => interpolator + 5 * count,
-        }
+        let envelope = if self.fluctuates() { 32 } else { 0 };
+        interpolator
+            + envelope
+            + match self.kind {
+                BlockKind::Noise { half, .. } => 2 * half + 2 * (2 * half + 1),
+                BlockKind::Tones { count, .. } => 5 * count,
+            }
+    }
+
+    /// Returns whether the texture becomes stronger and weaker in time.
+    pub fn fluctuates(&self) -> bool {
+        self.fluctuation.is_some()
+    }
+
+    pub(crate) fn fluctuation(&self) -> Option<StoredFluctuation> {
+        self.fluctuation
     }
 
     /// Returns the speeds of the grid of conditions, mm/s, ascending.

@@ -14,6 +14,12 @@ pub const KIND_NOISE: u8 = 1;
 pub const KIND_TONES: u8 = 2;
 /// Flag for sinusoids with random phases, which the seed determines.
 pub const RANDOM_PHASE: u8 = 1;
+/// Flag of a block that has a fluctuation in time.
+pub const FLUCTUATES: u8 = 2;
+/// Length of the fluctuation, bytes.
+pub const FLUCTUATION: usize = 8;
+/// Largest absolute value of the offset of the fluctuation's logarithm, octaves.
+pub const MOST_OFFSET: f32 = 16.0;
 /// Largest number of coefficients on one side of a noise filter; always a multiple of four.
 pub const MOST_HALF: usize = 320;
 /// Largest number of sinusoids.

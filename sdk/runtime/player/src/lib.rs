@@ -19,6 +19,7 @@
 
 mod block;
 mod crc;
+mod envelope;
 mod law;
 pub mod layout;
 mod noise;

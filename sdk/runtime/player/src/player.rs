@@ -1,6 +1,7 @@
 //! The player: renders the samples of a block.
 
 use crate::block::{Block, BlockKind};
+use crate::envelope::Envelope;
 use crate::layout::{MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_SPEED_MM_S};
 use crate::noise::Noise;
 use crate::tones::Tones;
@@ -12,6 +13,7 @@ struct Memory {
     noise: Noise,
     tones: Tones,
     upsampler: Upsampler,
+    envelope: Envelope,
     /// Phase of the next output sample. At phase 0 a new sample at the internal rate is needed.
     phase: usize,
     /// Number of steps left in the current glide.
@@ -33,6 +35,7 @@ impl Memory {
         noise: Noise::ZERO,
         tones: Tones::ZERO,
         upsampler: Upsampler::ZERO,
+        envelope: Envelope::ZERO,
         phase: 0,
         gliding: 0,
         last: (0.0, 0.0),
@@ -79,6 +82,9 @@ impl<'a> Player<'a> {
             BlockKind::Tones { count, random_phase } => {
                 self.memory.tones.start(count, random_phase, seed)
             }
+        }
+        if let Some(fluctuation) = self.block.fluctuation() {
+            self.memory.envelope.start(fluctuation, self.block.rate_hz(), seed);
         }
         self.sound(self.block.first());
     }
@@ -186,6 +192,15 @@ impl<'a> Player<'a> {
     }
 
     fn tick(&mut self) -> f32 {
+        let sample = self.steady();
+        match self.block.fluctuation() {
+            Some(fluctuation) => sample * self.memory.envelope.factor(fluctuation),
+            None => sample,
+        }
+    }
+
+    /// Returns the next sample without the fluctuation.
+    fn steady(&mut self) -> f32 {
         self.memory.is_started = true;
         self.count_held();
         if self.block.up() == 1 {

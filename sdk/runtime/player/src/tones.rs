@@ -5,7 +5,7 @@ use crate::layout::MOST_TONES;
 use crate::random::Random;
 
 /// Cycles per unit of a 32-bit phase.
-const CYCLES: f32 = 1.0 / 4_294_967_296.0;
+pub(crate) const CYCLES: f32 = 1.0 / 4_294_967_296.0;
 /// Lowest power of mixed sinusoids that can be scaled to a level.
 const LEAST_POWER: f32 = 1e-9;
 
@@ -142,7 +142,7 @@ impl Tones {
 
 /// Returns the cosine of a phase, where `2^32` is one cycle. The error is at most 4e-6. Uses
 /// Taylor's series of the sine within a quarter of a cycle.
-fn cosine(phase: u32) -> f32 {
+pub(crate) fn cosine(phase: u32) -> f32 {
     let x = phase as i32 as f32 * CYCLES;
     let t = 0.25 - x.abs();
     let s = t * t;

@@ -247,6 +247,9 @@ pub enum Effect {
     /// Scaling of the level with speed and force, by the asset's scaling law, at motions outside
     /// the recorded motions.
     LevelScaling,
+    /// Fluctuation of the texture in time, as the asset states it. The planner includes it only if
+    /// the scene switches it on.
+    Fluctuation,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
     /// Compensation of the frequency response of the finger on the display.
@@ -275,10 +278,11 @@ pub enum Effect {
 
 impl Effect {
     /// All effects, in the order of the chain.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Interpolation,
         Self::FrequencyScaling,
         Self::LevelScaling,
+        Self::Fluctuation,
         Self::Crossfade,
         Self::Compensation,
         Self::Resampling,
@@ -298,6 +302,7 @@ impl Effect {
             Self::Interpolation => "interpolation",
             Self::FrequencyScaling => "frequency_scaling",
             Self::LevelScaling => "level_scaling",
+            Self::Fluctuation => "fluctuation",
             Self::Crossfade => "crossfade",
             Self::Compensation => "compensation",
             Self::Resampling => "resampling",

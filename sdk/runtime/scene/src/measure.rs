@@ -8,7 +8,7 @@ use std::time::Instant;
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::{Part, Resampler, UnusableRates};
-use htex_format::{AtCondition, Condition, Contact, Law};
+use htex_format::{AtCondition, Condition, Contact, Fluctuation, Law};
 use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, Registry};
 use htex_play::{Conditions, Motion};
 
@@ -254,6 +254,7 @@ fn example_required() -> Requirements {
         pitch: 1.0,
         seed: 0,
         compensation: None,
+        fluctuation: true,
         touches: Vec::new(),
     }
 }
@@ -275,6 +276,7 @@ fn example_surface() -> PlayedSurface {
         largest_error_db: None,
         known: 1,
         follows_motion: false,
+        fluctuation: Fluctuation::from_db([4.0, 3.0]),
         conditions: Arc::new(example_conditions()),
         frequency: Span::ANY,
         level: Span::ANY,

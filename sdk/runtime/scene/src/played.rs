@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use htex_format::Fluctuation;
 use htex_play::exploration::CEILING;
 use htex_play::{Conditions, Representation, SampleSource, Scaling, VoiceOptions};
 
@@ -36,6 +37,8 @@ pub(crate) struct PlayedSurface {
     pub(crate) level: Span,
     /// Whether the model follows the motion itself.
     pub(crate) follows_motion: bool,
+    /// The fluctuation that the asset states, if it is not 0.
+    pub(crate) fluctuation: Option<Fluctuation>,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
@@ -89,6 +92,7 @@ impl PlayedSurface {
             frequency: Span::NONE,
             level: Span::NONE,
             follows_motion: loaded.follows_motion(),
+            fluctuation: asset.manifest().fluctuation.filter(|f| !f.is_zero()),
             speed_mm_s: touch.speed_mm_s,
             force_n: touch.force_n,
             always_touched: touch.always,

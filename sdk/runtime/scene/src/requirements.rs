@@ -7,7 +7,7 @@ use htex_play::exploration::CONTACT_RAMP_S;
 
 use crate::SceneError;
 use crate::device::quantity_misfit;
-use crate::file::Surface;
+use crate::file::{Effect, Surface, Switch};
 use crate::load::Scene;
 use crate::motion::{Course, Readings, topmost};
 use crate::response::Inverse;
@@ -90,6 +90,8 @@ pub(crate) struct Requirements {
     pub(crate) pitch: f64,
     pub(crate) seed: u64,
     pub(crate) compensation: Option<Inverse>,
+    /// Whether the scene switches the fluctuation of its textures on.
+    pub(crate) fluctuation: bool,
     /// How each surface is touched.
     pub(crate) touches: Vec<Touch>,
 }
@@ -147,6 +149,7 @@ impl Requirements {
                 .response
                 .as_ref()
                 .map(|r| Inverse::new(r, &scene.assets, pitch, choice.response_depth_db)),
+            fluctuation: file.effects.get(&Effect::Fluctuation) == Some(&Switch::On),
             touches: Vec::new(),
             device: device.clone(),
         };

@@ -105,6 +105,7 @@ class Texture:
         gain: float = 1.0,
         limit: float | None = None,
         envelope_bands: int = 0,
+        fluctuation: bool = False,
     ) -> Voice: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 

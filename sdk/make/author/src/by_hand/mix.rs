@@ -107,6 +107,12 @@ pub fn mix(
     let mut asset = new_asset(name, quantity, band, provenance, conditions, mixed);
     asset.manifest.contact = heavier.contact;
     asset.manifest.law = Some(heavier.law());
+    let strength_db =
+        |part: MixedAsset<'_>| part.asset.manifest().fluctuation.map_or([0.0; 2], |f| f.decibels());
+    let (of_a, of_b) = (strength_db(a), strength_db(b));
+    asset.manifest.fluctuation = htex_format::Fluctuation::from_db(
+        [0, 1].map(|range| (1.0 - weight) * of_a[range] + weight * of_b[range]),
+    );
     // A mixture of coded assets is coded too. Any other can be read wherever its parts can.
     Ok(if a.asset.manifest().is_coded() && b.asset.manifest().is_coded() {
         asset.coded()

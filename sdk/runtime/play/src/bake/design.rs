@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use htex_format::{Quantity, Rights};
+use htex_format::{Fluctuation, Quantity, Rights};
 
 use crate::{Error, Motion, Representation};
 use htex_dsp::grid::GRID_HZ;
@@ -13,6 +13,7 @@ use crate::bake::Grid;
 use crate::bake::compress::{Factors, StoredFilters};
 use crate::bake::encode::{BlockSpectra, Content, encode};
 use crate::bake::filter::Design;
+use crate::bake::fluctuation::BlockFluctuation;
 use crate::bake::interpolator::Interpolator;
 use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::Designer;
@@ -59,6 +60,8 @@ pub struct BakeResult {
     pub quantity: Quantity,
     /// The scaling law that the texture follows when the motion is beyond the grid.
     pub law: Law,
+    /// The fluctuation in time that the block plays.
+    pub fluctuation: Option<Fluctuation>,
     /// Ceiling of the level, in the asset's unit: beyond the grid, the scaling law raises the level
     /// at most to the ceiling.
     pub ceiling: f64,
@@ -97,6 +100,8 @@ pub struct BakeLimits {
     pub within_db: f64,
     /// Largest number of coefficients of a noise filter, which bounds the time per sample.
     pub longest: usize,
+    /// Whether the block plays the fluctuation in time that the asset states.
+    pub fluctuation: bool,
 }
 
 impl BakeLimits {
@@ -108,7 +113,7 @@ impl BakeLimits {
     /// Limits the error midway between conditions, in decibels, and allows filters of any length up
     /// to [`Self::MOST`] coefficients.
     pub fn within_db(within_db: f64) -> Self {
-        Self { within_db, longest: Self::MOST }
+        Self { within_db, longest: Self::MOST, fluctuation: false }
     }
 
     /// Limits the number of coefficients of a filter. A limit below [`Self::FEWEST`] has the effect
@@ -116,6 +121,13 @@ impl BakeLimits {
     #[must_use]
     pub fn with_longest(self, longest: usize) -> Self {
         Self { longest, ..self }
+    }
+
+    /// Sets whether the block plays the fluctuation in time that the asset states. If it does, its
+    /// full scale is higher.
+    #[must_use]
+    pub fn with_fluctuation(self, fluctuation: bool) -> Self {
+        Self { fluctuation, ..self }
     }
 
     /// Returns how many filter lengths may be tried.
@@ -160,7 +172,7 @@ pub fn bake(
         // A full axis is not changed, so the refined grid may be the same.
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
-            return designed.baked(&texture, grid, within_db);
+            return designed.baked(&texture, grid, limits);
         }
         grid = refined;
     }
@@ -302,8 +314,9 @@ impl GridDesign {
         mut self,
         texture: &Moments<'_>,
         grid: Grid,
-        within_db: f64,
+        limits: BakeLimits,
     ) -> Result<BakeResult, Error> {
+        let within_db = limits.within_db;
         let spectra = match self.shape.spectra.clone() {
             Spectra::Noise(designer, filters) => {
                 let sides: Vec<&[f64]> = filters.iter().map(|f| f.as_slice()).collect();
@@ -322,13 +335,17 @@ impl GridDesign {
             }
         };
         let law = texture.law();
+        let fluctuation = texture.fluctuation().filter(|_| limits.fluctuation);
+        let fluctuation =
+            fluctuation.map(|strength| BlockFluctuation::new(strength, self.interpolator.rate_hz));
         let content = Content {
             quantity: texture.quantity(),
             law,
             ceiling: self.ceiling(texture),
-            full_scale: self.full_scale(),
+            full_scale: self.full_scale() * fluctuation.map_or(1.0, |f| f.crest()),
             levels: self.shape.levels.clone(),
             spectra,
+            fluctuation,
         };
         let bytes = encode(&grid, &self.interpolator, &content);
         let numbers = Block::open(&bytes)?.numbers();
@@ -350,6 +367,7 @@ impl GridDesign {
             rights: texture.rights(),
             quantity: content.quantity,
             law,
+            fluctuation: fluctuation.map(|f| f.strength),
             ceiling: content.ceiling,
             full_scale: content.full_scale,
             internal_rate_hz: self.interpolator.internal_hz,

@@ -1,11 +1,14 @@
 //! Writes the bytes of a block.
 
 use htex_format::Quantity;
-use htex_player::layout::{CHECKSUM, HEADER, KIND_NOISE, KIND_TONES, MAGIC, RANDOM_PHASE, VERSION};
+use htex_player::layout::{
+    CHECKSUM, FLUCTUATES, HEADER, KIND_NOISE, KIND_TONES, MAGIC, RANDOM_PHASE, VERSION,
+};
 use htex_player::{Law, crc32};
 
 use crate::bake::Grid;
 use crate::bake::compress::StoredFilters;
+use crate::bake::fluctuation::BlockFluctuation;
 use crate::bake::interpolator::Interpolator;
 
 /// Duration of the glide to another motion, seconds.
@@ -19,6 +22,7 @@ pub(crate) struct Content {
     pub(crate) full_scale: f64,
     pub(crate) levels: Vec<f64>,
     pub(crate) spectra: BlockSpectra,
+    pub(crate) fluctuation: Option<BlockFluctuation>,
 }
 
 /// What a block stores for its conditions.
@@ -45,6 +49,7 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
             (KIND_TONES, flags, *count, 0)
         }
     };
+    let flags = if content.fluctuation.is_some() { flags | FLUCTUATES } else { flags };
     let mut bytes = Vec::new();
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
@@ -82,6 +87,11 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
     }
     // The 16-bit integers may end between two words.
     bytes.resize(bytes.len().next_multiple_of(4), 0);
+    if let Some(BlockFluctuation { period, strength, offset }) = content.fluctuation {
+        bytes.extend(period.to_le_bytes());
+        bytes.extend([strength.slow, strength.fast]);
+        bytes.extend(offset.to_le_bytes());
+    }
     let length = (bytes.len() + CHECKSUM) as u32;
     bytes[8..12].copy_from_slice(&length.to_le_bytes());
     // The checksum covers the length, so the length is written first.

@@ -27,6 +27,7 @@ mod compress;
 mod design;
 mod encode;
 mod filter;
+mod fluctuation;
 mod grid;
 mod interpolator;
 mod moments;

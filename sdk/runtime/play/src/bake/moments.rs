@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use crate::exploration::CEILING;
 use crate::{Conditions, Error, Interval, Motion, Representation};
-use htex_format::{Quantity, Rights};
+use htex_format::{Fluctuation, Quantity, Rights};
 use htex_host::{Band, Descriptor, LoadedModel};
 use htex_player::Law;
 
@@ -65,6 +65,11 @@ impl<'a> Moments<'a> {
 
     pub(crate) fn quantity(&self) -> Quantity {
         self.representation.texture().quantity()
+    }
+
+    /// Returns the fluctuation in time that the asset states, if it is not 0.
+    pub(crate) fn fluctuation(&self) -> Option<Fluctuation> {
+        self.representation.texture().manifest().fluctuation.filter(|f| !f.is_zero())
     }
 
     pub(crate) fn rights(&self) -> Rights {

@@ -5,6 +5,8 @@
 //! the model's rate, before resampling. Frequency scaling is the only stage whose ratio of input
 //! samples to output samples changes.
 //!
+//! A scene needs the fluctuation of its textures only if it switches this effect on.
+//!
 //! A scene may switch on an effect that is not needed. An effect that is not needed changes no bit
 //! of the samples, or changes them by at most 1e-6 of full scale
 //! (`sdk/runtime/scene/tests/it/equivalence.rs`). Therefore, leaving out an effect that is not
@@ -17,6 +19,7 @@ mod contact;
 mod crossfade;
 mod direction;
 mod dither;
+mod fluctuation;
 mod frequency_scaling;
 mod gain;
 mod interpolation;
@@ -136,6 +139,7 @@ pub(crate) const EFFECTS: &[Entry] = &[
     interpolation::ENTRY,
     frequency_scaling::ENTRY,
     level_scaling::ENTRY,
+    fluctuation::ENTRY,
     crossfade::ENTRY,
     compensation::ENTRY,
     resampling::ENTRY,

@@ -8,6 +8,7 @@ mod conformance;
 mod drive;
 mod equivalence;
 mod exploration;
+mod fluctuation;
 mod hostile;
 mod kept_gains;
 mod parsimony;

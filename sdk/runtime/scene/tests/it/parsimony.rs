@@ -4,8 +4,8 @@
 use crate::common;
 
 use common::{
-    constant, display, file, grid, integer_file, loudspeaker, planned, rendered, scene, single,
-    surface, trace, traced,
+    constant, display, file, fluctuating, grid, integer_file, loudspeaker, planned, rendered,
+    scene, single, surface, trace, traced,
 };
 use htex_device::Capabilities;
 use htex_scene::file::{Effect, Motion, Region, Surface, Switch};
@@ -64,6 +64,12 @@ fn pair(effect: Effect) -> (SceneOnDevice, SceneOnDevice) {
             ((strokes(single(), 0.0), file()), (strokes(single(), 0.2), file()))
         }
         Effect::LevelScaling => ((forces(0.0), file()), (forces(0.1), file())),
+        Effect::Fluctuation => {
+            let quiet = scene(&fluctuating(), constant(80.0, 0.4), 0.5);
+            let mut asked = quiet.clone();
+            asked.file.effects = [(effect, Switch::On)].into();
+            ((quiet, file()), (asked, file()))
+        }
         Effect::Crossfade => ((two(50.0), file()), (two(80.0), file())),
         Effect::Compensation => {
             ((plain(), display()), (with(&|s| s.response = Some(response.clone())), display()))

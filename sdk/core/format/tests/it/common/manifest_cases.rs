@@ -66,6 +66,14 @@ pub(super) fn manifests() -> Vec<Named> {
                 "level_force": { "exponent": 1, "source": "measured", "standard_error": -0.1 },
             });
         }),
+        ("json_type_fluctuation", |m| {
+            m["htex"] = json!("1.1");
+            m["fluctuation"] = json!({ "slow": 256, "fast": 0 });
+        }),
+        ("json_type_fluctuation_missing", |m| {
+            m["htex"] = json!("1.1");
+            m["fluctuation"] = json!({ "slow": 12 });
+        }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
         ("field_unknown", |m| m["representations"][0]["fields"][0]["name"] = json!("alfa")),

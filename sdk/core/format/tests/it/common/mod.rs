@@ -47,6 +47,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
             },
             conditions: (0..conditions).map(condition).collect(),
             law: None,
+            fluctuation: None,
             representations,
             reference: None,
             plugins: Vec::new(),

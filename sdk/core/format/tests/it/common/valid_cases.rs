@@ -79,6 +79,13 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_fluctuation",
+            with_manifest(|m| {
+                m["htex"] = json!("1.1");
+                m["fluctuation"] = json!({ "slow": 112, "fast": 71 });
+            }),
+        ),
+        (
             "valid_mixed",
             with_manifest(|m| {
                 m["provenance"]["made"] = json!({

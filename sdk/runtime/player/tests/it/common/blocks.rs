@@ -27,6 +27,8 @@ pub struct Plan {
     pub numbers: Vec<f32>,
     /// Weights and filters.
     pub integers: Vec<i16>,
+    /// Samples between values, the two strengths, and the offset; written if the flags say so.
+    pub fluctuation: (u16, [u8; 2], f32),
 }
 
 /// Noise with levels 1 and 2, and with two different filters.
@@ -55,6 +57,7 @@ pub fn noise() -> Plan {
         levels: vec![1.0, 2.0],
         numbers: vec![5e-10, 5e-10],
         integers: weights.into_iter().chain(filter(0.5)).chain(filter(-0.7)).collect(),
+        fluctuation: (16, [112, 71], -0.4),
     }
 }
 
@@ -85,6 +88,12 @@ impl Plan {
         let integers = self.integers.iter().flat_map(|x| x.to_le_bytes());
         let mut numbers: Vec<u8> = numbers.chain(integers).collect();
         numbers.resize(numbers.len().next_multiple_of(4), 0);
+        if self.flags & 2 != 0 {
+            let (period, strength, offset) = self.fluctuation;
+            numbers.extend(period.to_le_bytes());
+            numbers.extend(strength);
+            numbers.extend(offset.to_le_bytes());
+        }
         let mut bytes = b"HTXB\x01\x00".to_vec();
         bytes.extend([self.kind, self.flags]);
         bytes.extend((52 + numbers.len() as u32 + 4).to_le_bytes());

@@ -312,6 +312,15 @@ fn sound() -> Vec<(&'static str, Plan)> {
         ("noise_without_energy", noise_without_energy()),
         ("noise_100_hz", noise_rate(100.0, 1, 0, 2)),
         ("noise_44100_hz", noise_rate(44_100.0, 17, 12, 52)),
+        ("noise_fluctuating", Plan { flags: 2, ..noise_grid() }),
+        (
+            "noise_fluctuating_slowly",
+            Plan { flags: 2, fluctuation: (300, [255, 0], 1.5), ..noise_one_condition() },
+        ),
+        (
+            "tones_fluctuating",
+            Plan { flags: 3, fluctuation: (1, [0, 255], -1.0), ..tones_random() },
+        ),
         ("tones_fixed_phases", tones_fixed()),
         ("tones_random_phases", tones_random()),
         ("tones_law", tones_law()),
@@ -378,5 +387,16 @@ fn hostile() -> Vec<(&'static str, Vec<u8>)> {
         ("refused_frequency", tones_with(|p| p.numbers[0] = 0.6)),
         ("refused_amplitude", tones_with(|p| p.numbers[1] = 65.0)),
         ("refused_padding", padded()),
+        ("refused_fluctuation_flag", noise_with(|p| p.flags = 4)),
+        ("refused_fluctuation_period", noise_with(|p| (p.flags, p.fluctuation.0) = (2, 0))),
+        ("refused_fluctuation_offset", noise_with(|p| (p.flags, p.fluctuation.2) = (2, 16.5))),
+        (
+            "refused_fluctuation_missing",
+            changed(|b| {
+                b[7] = 2;
+                b.truncate(b.len() - 4);
+                *b = with_checksum(std::mem::take(b));
+            }),
+        ),
     ]
 }

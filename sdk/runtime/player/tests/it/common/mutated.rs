@@ -25,15 +25,18 @@ pub const MOTIONS: [(f32, f32); 11] = [
 /// the player.
 pub fn changed() -> impl Strategy<Value = Vec<u8>> {
     let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6);
-    (any::<bool>(), changes, 0usize..4).prop_map(|(is_tones, changes, cut)| {
-        let mut bytes = plan(is_tones).bytes();
-        bytes.truncate(bytes.len() - 4 - 4 * (cut / 3));
-        for (index, byte) in changes {
-            let at = index.index(bytes.len());
-            bytes[at] = byte;
-        }
-        with_checksum(bytes)
-    })
+    (any::<bool>(), any::<bool>(), changes, 0usize..4).prop_map(
+        |(is_tones, moves, changes, cut)| {
+            let flags = if moves { 2 } else { 0 };
+            let mut bytes = Plan { flags, ..plan(is_tones) }.bytes();
+            bytes.truncate(bytes.len() - 4 - 4 * (cut / 3));
+            for (index, byte) in changes {
+                let at = index.index(bytes.len());
+                bytes[at] = byte;
+            }
+            with_checksum(bytes)
+        },
+    )
 }
 
 /// Blocks with random numbers, and whether the numbers are small.
@@ -73,6 +76,8 @@ pub fn extreme() -> Vec<Vec<u8>> {
     let mut high = tones();
     (high.law, high.forces) = ([4.0; 3], vec![1e-6]);
     high.numbers = vec![0.5, 64.0, 0.5, 64.0, 1e-45, -64.0, 0.0, 1e-4];
+    (loud.flags, loud.fluctuation) = (2, (1, [255, 255], 16.0));
+    (high.flags, high.fluctuation) = (3, (u16::MAX, [255, 0], -16.0));
     [loud, faint, high].map(|plan| plan.bytes()).to_vec()
 }
 

@@ -82,6 +82,7 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             finger: None,
             contact: Default::default(),
             law: None,
+            fluctuation: None,
             quantity,
             unit: quantity.unit().to_owned(),
             band: Band { low_hz: 20.0, high_hz: 1000.0 },

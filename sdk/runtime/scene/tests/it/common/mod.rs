@@ -9,6 +9,7 @@ use htex_author::recording::TraceColumns;
 use htex_author::simulate::{SimulationOptions, Surface as Simulated, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
+use htex_format::Fluctuation;
 use htex_play::{Registry, Texture};
 use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, SceneFile, Surface};
 use htex_scene::{Costs, Plan, Renderer, Scene, Trace, plan};
@@ -57,8 +58,17 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Texture {
     let request = AssetRequest::new("simulated")
         .with_models(Registry::builtin().models().iter().map(ModelRequest::new));
     let takes: Vec<Take> = conditions.iter().map(take).collect();
-    let fitted = fit_asset(&takes, &request).unwrap();
+    let mut fitted = fit_asset(&takes, &request).unwrap();
+    // An asset that fluctuates plays other samples if the scene switches this effect on.
+    fitted.asset.manifest.fluctuation = None;
     Texture::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+}
+
+/// The asset of [`single`] with a fluctuation.
+pub(crate) fn fluctuating() -> Texture {
+    let mut asset = single().data().clone();
+    asset.manifest.fluctuation = Fluctuation::from_db([4.0, 3.0]);
+    Texture::from_bytes(&asset.to_bytes().unwrap()).unwrap()
 }
 
 /// A scene with one surface without a region.

@@ -1,0 +1,99 @@
+//! The fluctuation of a texture in time: from a recording to samples.
+
+use crate::common::Place;
+use htex_dsp::noise::GaussianNoise;
+use htex_dsp::random_envelope::RandomEnvelope;
+use htex_format::{Asset, Fluctuation};
+
+const RATE_HZ: u32 = 4_000;
+const STRENGTH_DB: [f64; 2] = [4.0, 3.0];
+
+/// 30 s of white noise whose level fluctuates.
+fn recorded(place: &Place) {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut samples = vec![0.0; 30 * RATE_HZ as usize];
+    GaussianNoise::new(1).fill(&mut samples);
+    RandomEnvelope::new(STRENGTH_DB, RATE_HZ.into(), 2).apply(&mut samples);
+    let mut wav = hound::WavWriter::create(place.path("rec.wav"), spec).unwrap();
+    samples.iter().for_each(|x| wav.write_sample(0.1 * x).unwrap());
+    wav.finalize().unwrap();
+}
+
+#[test]
+fn a_fit_states_the_fluctuation_and_a_voice_plays_it_when_asked() {
+    let place = Place::new();
+    recorded(&place);
+    let fit = ["fit", "rec.wav", "--segments", "windows", "--model", "bands", "-o", "new.htex"];
+    let run = place.run(&fit);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let info = place.json(&["info", "new.htex", "--json"]);
+    assert_eq!(info["manifest"]["htex"], "1.1");
+    let stored: Fluctuation =
+        serde_json::from_value(info["manifest"]["fluctuation"].clone()).unwrap();
+    for (found, wanted) in stored.decibels().into_iter().zip(STRENGTH_DB) {
+        assert!((found / wanted - 1.0).abs() < 0.2, "{stored}");
+    }
+    let line = format!("fluctuation in time: {stored}");
+    assert!(place.run(&["info", "new.htex"]).text().contains(&line));
+    assert_eq!(place.run(&["validate", "new.htex"]).code(), 0);
+
+    let mut steady = Asset::open(&place.path("new.htex")).unwrap();
+    steady.manifest.fluctuation = None;
+    place.write("steady.htex", steady.to_bytes().unwrap());
+    let samples = |asset: &str, more: &[&str]| {
+        let synth = ["synth", asset, "--seconds", "60", "--rate", "2000", "-o", "out.wav"];
+        assert_eq!(place.run(&[&synth[..], more].concat()).code(), 0);
+        place.samples("out.wav")
+    };
+    let plain = samples("steady.htex", &[]);
+    assert!(plain == samples("new.htex", &[]));
+    assert!(plain == samples("steady.htex", &["--fluctuation"]));
+    let fluctuates = samples("new.htex", &["--fluctuation"]);
+    assert!(plain != fluctuates);
+    // The envelope's own mean square has a standard deviation of about 6 % over a minute.
+    let change = crate::common::rms(&fluctuates) / crate::common::rms(&plain);
+    assert!((change - 1.0).abs() < 0.1, "{change}");
+
+    let compared = place.json(&["compare", "rec.wav", "new.htex", "--json"]);
+    assert!(compared.to_string().contains("fluctuation_error_db"));
+    let bake = place.run(&["bake", "new.htex", "-o", "new.bin"]);
+    assert_eq!(bake.code(), 0);
+    assert!(bake.error().contains("fluctuation in time"), "{}", bake.error());
+}
+
+/// An edited texture keeps its fluctuation, and a mixture has the weighted mean.
+#[test]
+fn edits_keep_the_fluctuation_and_mixtures_have_its_mean() {
+    let place = Place::new();
+    let recording = place.recording("sandpaper");
+    let fit = ["fit", &recording, "--model", "bands", "--at", "speed=80,force=0.4"];
+    assert_eq!(place.run(&[&fit[..], &["-o", "one.htex"]].concat()).code(), 0);
+    let mut asset = Asset::open(&place.path("one.htex")).unwrap();
+    asset.manifest.fluctuation = None;
+    place.write("steady.htex", asset.to_bytes().unwrap());
+    asset.manifest.fluctuation = Some(Fluctuation { slow: 100, fast: 40 });
+    place.write("moving.htex", asset.to_bytes().unwrap());
+    let stated = |file: &str| Asset::open(&place.path(file)).unwrap().manifest.fluctuation;
+
+    let edit = ["edit", "moving.htex", "--name", "Other", "-o", "edited.htex"];
+    assert_eq!(place.run(&edit).code(), 0);
+    assert_eq!(stated("edited.htex"), Some(Fluctuation { slow: 100, fast: 40 }));
+    let mix = |a: &str, b: &str| {
+        let mix = ["mix", a, b, "--weight", "0.75", "-o", "mixed.htex"];
+        assert_eq!(place.run(&mix).code(), 0);
+        stated("mixed.htex")
+    };
+    let quarter = Some(Fluctuation { slow: 25, fast: 10 });
+    assert!(
+        [quarter, Some(Fluctuation { slow: 75, fast: 30 })]
+            .contains(&mix("moving.htex", "steady.htex"))
+    );
+    assert_ne!(mix("moving.htex", "steady.htex"), mix("steady.htex", "moving.htex"));
+    assert_eq!(mix("steady.htex", "steady.htex"), None);
+    assert_eq!(mix("moving.htex", "moving.htex"), stated("moving.htex"));
+}

@@ -1,0 +1,59 @@
+//! How strongly a texture becomes stronger and weaker in time.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The fluctuation of a texture: the strength of one random envelope that multiplies all bands.
+///
+/// Noise with a recorded spectrum is equally strong at all times, but a recording is not. A player
+/// can multiply the noise by an envelope `exp(x)` with the mean square 1, where x is Gaussian noise.
+/// The two numbers are the standard deviations of the slow and the fast part of x, in steps of 1/32
+/// dB. The texture's spectrum and level stay as they are.
+///
+/// ```
+/// use htex_format::Fluctuation;
+/// let fluctuation = Fluctuation::from_db([3.0, 1.52]);
+/// assert_eq!(fluctuation.map(|f| (f.slow, f.fast)), Some((96, 49)));
+/// assert_eq!(Fluctuation::from_db([0.0, 0.01]), None);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Fluctuation {
+    /// Standard deviation of the part at 0.5 to 8 Hz, in steps of 1/32 dB.
+    #[schemars(range(min = 0, max = 255))]
+    pub slow: u8,
+    /// Standard deviation of the part at 8 to 32 Hz, in steps of 1/32 dB.
+    #[schemars(range(min = 0, max = 255))]
+    pub fast: u8,
+}
+
+impl Fluctuation {
+    /// Size of a step, decibels.
+    pub const STEP_DB: f64 = 1.0 / 32.0;
+
+    /// Rounds two standard deviations in decibels to steps, at most 255. `None` if both become 0.
+    pub fn from_db(strength_db: [f64; 2]) -> Option<Self> {
+        // The conversion limits what is out of range, and turns NaN into 0.
+        let [slow, fast] = strength_db.map(|db| (db / Self::STEP_DB).round() as u8);
+        (slow > 0 || fast > 0).then_some(Self { slow, fast })
+    }
+
+    /// Returns the standard deviations of the slow and the fast part, decibels: 0 to 7.97.
+    pub fn decibels(self) -> [f64; 2] {
+        [self.slow, self.fast].map(|steps| f64::from(steps) * Self::STEP_DB)
+    }
+
+    /// Returns whether the texture is equally strong at all times.
+    pub fn is_zero(self) -> bool {
+        self.slow == 0 && self.fast == 0
+    }
+}
+
+/// Writes the standard deviations: `3.00 dB at 0.5 to 8 Hz and 1.53 dB at 8 to 32 Hz`.
+impl fmt::Display for Fluctuation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [slow, fast] = self.decibels();
+        write!(f, "{slow:.2} dB at 0.5 to 8 Hz and {fast:.2} dB at 8 to 32 Hz")
+    }
+}

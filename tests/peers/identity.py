@@ -190,7 +190,7 @@ def table(rows):
 
 def figure(rows):
     """Return an SVG: the part named right of assets of one take, over the bytes of the parameters."""
-    width, height, left, top, right, bottom = 640, 400, 56, 16, 150, 46
+    width, height, left, top, right, bottom = 640, 410, 56, 32, 150, 46
     x = lambda size: left + (width - left - right) * np.log(size / 4) / np.log(600 / 4)
     y = lambda part: height - bottom - (height - top - bottom) * part
     text = lambda px, py, words, anchor="middle": f'<text x="{px:.1f}" y="{py:.1f}" text-anchor="{anchor}">{words}</text>'
@@ -200,7 +200,7 @@ def figure(rows):
         out += [line(x(size), y(0), x(size), y(1), 'stroke="#e4e4e4"'), text(x(size), y(0) + 16, size)]
     for percent in range(0, 101, 20):
         out += [line(left, y(percent / 100), width - right, y(percent / 100), 'stroke="#e4e4e4"'), text(left - 6, y(percent / 100) + 4, percent, "end")]
-    out += [text((left + width - right) / 2, height - 8, "bytes of parameters"), text(left - 40, top - 4, "named right / %", "start")]
+    out += [text((left + width - right) / 2, height - 8, "bytes of parameters"), text(8, 16, "materials named right / %", "start")]
     real = y(rows[0]["one"])
     out += [line(left, real, width - right, real, 'stroke="#4d4d4d" stroke-dasharray="5 3"'), text(width - right + 6, real + 4, "the takes themselves", "start")]
     legend = top + 44

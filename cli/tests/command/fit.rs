@@ -192,8 +192,20 @@ fn knobs_change_the_fit() {
     let speak = |jnd: &str| count("speak", &format!("speak.jnd={jnd}"), "frequency_hz");
     assert!(speak("0.9") < speak("0.12"));
     for (model, options) in [
-        ("ar", &["ar.method=burg", "ar.method=covariance", "ar.rate_hz=4000"][..]),
-        ("mfcc", &["mfcc.inverse=nnls", "mfcc.inverse=interpolate", "mfcc.bands=20"]),
+        (
+            "ar",
+            &["ar.method=burg", "ar.method=covariance", "ar.method=decibel", "ar.rate_hz=4000"][..],
+        ),
+        (
+            "mfcc",
+            &[
+                "mfcc.inverse=nnls",
+                "mfcc.inverse=interpolate",
+                "mfcc.inverse=log-log",
+                "mfcc.fit=decibel",
+                "mfcc.bands=20",
+            ],
+        ),
         ("speak", &["speak.phase=zero", "speak.frequency=bin"]),
         ("sbeta", &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=magnitude", "sbeta.bins=0"]),
         ("sslope", &["sslope.rounding_db_per_decade=20"]),

@@ -7,9 +7,13 @@
 
 use alloc::vec::Vec;
 
+use htex_dsp::decibel_fit::DecibelFit;
 use htex_dsp::estimation::{burg, covariance};
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
-use htex_dsp::linear_prediction::{LinearPrediction, levinson_durbin, within_radius};
+use htex_dsp::linear_prediction::{
+    LinearPrediction, coefficients_to_reflection, levinson_durbin, reflection_to_coefficients,
+    scale_poles, within_radius,
+};
 use htex_dsp::resample::Resampler;
 use htex_model::{Error, Fit, FitInput, text};
 
@@ -23,6 +27,9 @@ const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
 /// Half-power width of the narrowest resonance of a fit, hertz. Bins can neither resolve narrower
 /// resonances nor measure their level.
 const NARROWEST_HZ: f64 = GRID_HZ;
+/// Factor on the poles of the Yule–Walker method, with which the search in decibels starts. Nearer
+/// to the circle, the search would hardly move a pole.
+const START: f64 = 0.98;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if input.magnitude.iter().all(|&m| m == 0.0) {
@@ -39,19 +46,15 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     match input.options[METHOD] as u32 {
         0 => from_spectrum(input, order, rate_hz),
         1 => from_signal(input, rate_hz, |signal| burg(&[signal], order)),
-        _ => from_signal(input, rate_hz, |signal| covariance(&[signal], order)),
+        2 => from_signal(input, rate_hz, |signal| covariance(&[signal], order)),
+        _ => from_decibels(input, order, rate_hz),
     }
 }
 
 /// Fits the coefficients by Yule–Walker on the power spectrum. The prediction error determines the
 /// level.
 fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit, Error> {
-    // Relative to the largest bin, so that no power overflows or underflows.
-    let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
-    let lags: Vec<f64> = (0..=order)
-        .map(|lag| autocorrelation(input, largest, lag as f64 / rate_hz, rate_hz))
-        .collect();
-    let model = levinson_durbin(&lags, order);
+    let (model, largest) = yule_walker(input, order, rate_hz);
     let coefficients = resolved(&model.coefficients, rate_hz);
     let filter = Filter { coefficients: &coefficients, rate_hz };
     let level = filter.level(input.band)?;
@@ -65,6 +68,68 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
     let gain = htex_dsp::root::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
     Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: largest * gain * level })
+}
+
+/// Returns the solution of the Yule–Walker equations, and the largest bin, to which the solution's
+/// error is relative so that no power overflows or underflows.
+fn yule_walker(input: &FitInput<'_>, order: usize, rate_hz: f64) -> (LinearPrediction, f64) {
+    let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
+    let lags: Vec<f64> = (0..=order)
+        .map(|lag| autocorrelation(input, largest, lag as f64 / rate_hz, rate_hz))
+        .collect();
+    (levinson_durbin(&lags, order), largest)
+}
+
+/// Fits the coefficients to levels in decibels, starting from the Yule–Walker method.
+///
+/// The Yule–Walker method minimises the mean ratio of the recorded to the fitted power, so it
+/// follows the strongest bins. Where the spectrum is 20 dB or more below its maximum, a filter of
+/// low order costs it nearly nothing if it is several decibels too strong.
+///
+/// The search moves the inverse hyperbolic tangents of the reflection coefficients of a filter whose
+/// poles are then scaled by `radius`. So every trial is stable, and has no resonance narrower than
+/// [`NARROWEST_HZ`].
+fn from_decibels(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit, Error> {
+    let radius = narrowest_radius(rate_hz);
+    let bins = input.frequency_hz.partition_point(|&f| f <= 0.5 * rate_hz);
+    let (model, largest) = yule_walker(input, order, rate_hz);
+    let power: Vec<f64> =
+        input.magnitude[..bins].iter().map(|m| (m / largest) * (m / largest)).collect();
+    let start = scale_poles(&model.coefficients, START);
+    let mut search: Vec<f64> = match coefficients_to_reflection(&start) {
+        Some(reflection) => reflection.iter().map(|&k| libm::atanh(k)).collect(),
+        None => vec![0.0; order],
+    };
+    let filter = |search: &[f64]| {
+        let reflection: Vec<f64> = search.iter().map(|&x| libm::tanh(x)).collect();
+        scale_poles(&reflection_to_coefficients(&reflection), radius)
+    };
+    let turns: Vec<(f64, f64)> = input.frequency_hz[..bins]
+        .iter()
+        .map(|f| core::f64::consts::TAU * f / rate_hz)
+        .map(|angle| (htex_dsp::trig::sin(angle), htex_dsp::trig::cos(angle)))
+        .collect();
+    let levels = DecibelFit::new(input.band, &input.frequency_hz[..bins], &power);
+    levels.run(&mut search, |search, power| {
+        let coefficients = filter(search);
+        for (power, &turn) in power.iter_mut().zip(&turns) {
+            *power = power_at(&coefficients, turn);
+        }
+    });
+    // Rounding moves poles that lie close together, so the filter is checked again.
+    let coefficients = resolved(&filter(&search), rate_hz);
+    Filter { coefficients: &coefficients, rate_hz }.level(input.band)?;
+    Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: recorded_level(input) })
+}
+
+/// Returns the power of the filter at a frequency, given as the sine and cosine of its angle.
+fn power_at(coefficients: &[f64], (sine, cosine): (f64, f64)) -> f64 {
+    // `sum A_k z^-k` by Horner's scheme.
+    let (re, im) = coefficients.iter().rev().fold((0.0, 0.0), |(re, im), a| {
+        let re = re + a;
+        (re * cosine + im * sine, im * cosine - re * sine)
+    });
+    1.0 / ((1.0 - re) * (1.0 - re) + im * im)
 }
 
 /// Returns the autocorrelation at `lag_s` seconds, from the power in the bins up to the Nyquist
@@ -112,8 +177,12 @@ fn recorded_level(input: &FitInput<'_>) -> f64 {
 
 /// Widens resonances that are narrower than [`NARROWEST_HZ`].
 fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
-    let radius = libm::exp(-core::f64::consts::PI * NARROWEST_HZ / rate_hz);
-    within_radius(coefficients, radius)
+    within_radius(coefficients, narrowest_radius(rate_hz))
+}
+
+/// Returns the radius of a pole whose resonance is [`NARROWEST_HZ`] wide.
+fn narrowest_radius(rate_hz: f64) -> f64 {
+    libm::exp(-core::f64::consts::PI * NARROWEST_HZ / rate_hz)
 }
 
 fn unusable_rates(from_hz: f64, rate_hz: f64) -> Error {

@@ -77,11 +77,13 @@ impl Model for Autoregression {
         .sweep(&[2000.0, 2500.0, 4000.0]),
         StaticOption::choice(
             "method",
-            &["yule-walker", "burg", "covariance"],
+            &["yule-walker", "burg", "covariance", "decibel"],
             "How the coefficients are estimated: `yule-walker` from the averaged power spectrum, \
-             `burg` and `covariance` from the overlap-added segments of the recording.",
+             `burg` and `covariance` from the overlap-added segments of the recording; `decibel` \
+             minimises the squared differences, in decibels, between the spectra of the filter and \
+             of the recording, in 30 bands.",
         )
-        .sweep_alone(&[0.0, 1.0, 2.0]),
+        .sweep_alone(&[0.0, 1.0, 2.0, 3.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {

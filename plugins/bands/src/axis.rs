@@ -2,16 +2,11 @@
 
 use alloc::sync::Arc;
 
+use htex_dsp::bands::edge_to_edge;
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
 use htex_dsp::shared::Shared;
 
-/// Frequency that is added to all frequencies on the axis of [`Layout::Edges`], hertz. Below this
-/// frequency, the knots are nearly equally spaced in hertz; above it, they are nearly equally
-/// spaced in octaves. For example, 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz, and the
-/// bins are 5 Hz apart. We tried values from 0 to 60 Hz: values around 20 Hz gave the smallest
-/// third-octave error.
-const CORNER_HZ: f64 = 20.0;
 /// From this number of bands on, the default layout is [`Layout::Edges`].
 const EDGES_FROM: usize = 20;
 
@@ -60,13 +55,7 @@ impl Axis {
     fn place(&self, frequency_hz: f64) -> f64 {
         match self.layout {
             Layout::Within => log_unit(frequency_hz, self.band) * (self.knots + 1) as f64 - 1.0,
-            Layout::Edges => {
-                let raised = Band {
-                    low_hz: self.band.low_hz + CORNER_HZ,
-                    high_hz: self.band.high_hz + CORNER_HZ,
-                };
-                log_unit(frequency_hz + CORNER_HZ, raised) * (self.knots - 1) as f64
-            }
+            Layout::Edges => edge_to_edge(frequency_hz, self.band) * (self.knots - 1) as f64,
         }
     }
 

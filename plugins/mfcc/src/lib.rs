@@ -14,6 +14,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use htex_dsp::dct::dct_ii;
+use htex_dsp::decibel_fit::DecibelFit;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::Scratch;
@@ -33,6 +34,10 @@ const INVERSE: usize = 2;
 const COEFFICIENTS_OPTION: usize = 0;
 const BANDS_OPTION: usize = 1;
 const INVERSE_OPTION: usize = 2;
+const FIT_OPTION: usize = 3;
+
+/// Value of the option `fit`.
+const DECIBEL: u32 = 1;
 
 const MAX_BANDS: u32 = 128;
 /// Lower limit of band energies, the asset's unit squared (numeric definitions: MFCC).
@@ -71,12 +76,13 @@ impl ShapedModel for MelCepstrum {
         StaticField::scalar(
             "inverse",
             "1",
-            (0.0, 2.0),
+            (0.0, 3.0),
             "How the spectrum is computed from the energies. 0: pseudo-inverse. 1: non-negative \
-             least squares. 2: interpolation between the bands' apexes.",
+             least squares. 2: interpolation between the bands' apexes. 3: interpolation of the \
+             logarithm of power over the logarithm of frequency, continued to the band's edges.",
         )
         .stored(WHOLE)
-        .usual(UsualRange::linear(0.0, 2.0)),
+        .usual(UsualRange::linear(0.0, 3.0)),
     ])
     .options(&[
         StaticOption::integer(
@@ -97,12 +103,22 @@ impl ShapedModel for MelCepstrum {
         .sweep_alone(&[20.0, 32.0, 64.0]),
         StaticOption::choice(
             "inverse",
-            &["pinv", "nnls", "interpolate"],
+            &["pinv", "nnls", "interpolate", "log-log"],
             "How the spectrum is computed from the energies: `pinv` uses the pseudo-inverse of the \
              filter bank, clipped at zero; `nnls` uses non-negative least squares; `interpolate` \
-             interpolates between the bands' apexes.",
+             interpolates between the bands' apexes; `log-log` interpolates the logarithm of power \
+             over the logarithm of frequency, and continues the lines to the band's edges.",
         )
-        .sweep(&[0.0, 1.0, 2.0]),
+        .sweep(&[0.0, 1.0, 2.0])
+        .sweep_alone(&[3.0]),
+        StaticOption::choice(
+            "fit",
+            &["transform", "decibel"],
+            "How the coefficients are found: `transform` keeps the first terms of the cosine \
+             transform, as in the paper; `decibel` minimises the squared differences, in decibels, \
+             between the spectra that the model plays and that was recorded, in 30 bands.",
+        )
+        .sweep_alone(&[0.0, 1.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -119,6 +135,9 @@ impl ShapedModel for MelCepstrum {
         log_energy.iter_mut().for_each(|e| *e = libm::log(e.max(FLOOR)));
         let mut cepstrum = vec![0.0; kept];
         dct_ii(&log_energy, &mut cepstrum);
+        if input.options[FIT_OPTION] as u32 == DECIBEL {
+            fit_decibels(&inverse, input, &power, &mut cepstrum);
+        }
         let spectrum = Spectrum::with_cepstrum(inverse, band, &cepstrum)?;
         let count = [cepstrum.len() as f64];
         let rest = [bands as f64, input.options[INVERSE_OPTION]];
@@ -138,6 +157,36 @@ impl ShapedModel for MelCepstrum {
             ));
         }
         mix::linear(sets, weights, out)
+    }
+}
+
+/// Moves the coefficients so that the spectrum that `inverse` makes of them is as near to `power` as
+/// possible, in decibels, and has its energy.
+///
+/// The first terms of the transform are the smoothest description of the bands' levels, but the
+/// inverse does not see only these: it has to guess the edges of the band, where the filters have
+/// no weight, and what lies within the wide filters. All coefficients together can correct both.
+fn fit_decibels(inverse: &Inverse, input: &FitInput<'_>, power: &[f64], cepstrum: &mut [f64]) {
+    let mut energy = vec![0.0; inverse.bands()];
+    let mut scratch = Scratch::new(inverse.bands());
+    let mut whole = cepstrum.to_vec();
+    let Some((level, shape)) = cepstrum.split_first_mut() else {
+        return;
+    };
+    let levels = DecibelFit::new(input.band, input.frequency_hz, power);
+    levels.run(shape, |shape, power| {
+        whole[1..].copy_from_slice(shape);
+        inverse.power(&whole, &mut energy, &mut scratch, power);
+    });
+    let mut fitted = vec![0.0; power.len()];
+    whole[1..].copy_from_slice(shape);
+    inverse.power(&whole, &mut energy, &mut scratch, &mut fitted);
+    let gain = power.iter().sum::<f64>() / fitted.iter().sum::<f64>();
+    // The first coefficient is the mean logarithm of energy, times the root of the bands' number.
+    let raise = libm::log(gain) * htex_dsp::root::sqrt(inverse.bands() as f64);
+    // Not if the spectrum has no power or too much of it, which the caller reports.
+    if raise.is_finite() {
+        *level += raise;
     }
 }
 
@@ -182,12 +231,13 @@ impl Spectrum {
 
     /// Computes the magnitudes from the cepstrum. Does not allocate.
     fn make(&mut self) {
-        self.inverse.magnitude(
+        self.inverse.power(
             &self.cepstrum,
             &mut self.energy,
             &mut self.scratch,
             &mut self.magnitude,
         );
+        self.magnitude.iter_mut().for_each(|m| *m = htex_dsp::root::sqrt(*m));
     }
 }
 

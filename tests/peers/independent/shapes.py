@@ -211,11 +211,15 @@ def mfcc(values: Values, band: Band) -> Callable:
     cepstrum, count, inverse = values[0], whole(values[1]), whole(values[2])
     padded = np.zeros(count)
     padded[: min(count, len(cepstrum))] = cepstrum[:count]
+    logs = idct(padded, norm="ortho")
+    edges, weights = mel_bank(count, band)
+    if inverse == 3:
+        amplitudes = log_log(edges, weights, logs, band.grid)
+        return normed(lambda f: np.interp(f, band.grid, amplitudes), band)
     with np.errstate(over="ignore"):
-        energies = np.exp(idct(padded, norm="ortho"))
+        energies = np.exp(logs)
     if not np.all(np.isfinite(energies)) or not np.any(energies > 0):
         raise Refusal("band energies that are not finite, or all zero")
-    edges, weights = mel_bank(count, band)
     if inverse == 0:
         share = 2.0**-52 * max(weights.shape)
         power = np.maximum(np.linalg.pinv(weights, rcond=share) @ energies, 0.0)
@@ -230,6 +234,21 @@ def mfcc(values: Values, band: Band) -> Callable:
         power = np.interp(band.grid, edges[1:-1][some], energies[some] / sums[some])
     amplitudes = np.sqrt(power)
     return normed(lambda f: np.interp(f, band.grid, amplitudes), band)
+
+
+def log_log(edges: np.ndarray, weights: np.ndarray, logs: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """Amplitudes at the grid: ln p is linear in ln f between the apexes, and beyond the outermost ones with a slope of at most 8."""
+    sums = weights.sum(axis=1)
+    some = sums > 0
+    if not np.any(some):
+        raise Refusal("no filter has weight on the grid")
+    x, y, at = np.log(edges[1:-1][some]), logs[some] - np.log(sums[some]), np.log(grid)
+    power = np.interp(at, x, y)
+    if len(x) > 1:
+        first, last = (np.clip((y[i + 1] - y[i]) / (x[i + 1] - x[i]), -8, 8) for i in (0, len(x) - 2))
+        power += first * np.minimum(at - x[0], 0) + last * np.maximum(at - x[-1], 0)
+    with np.errstate(over="ignore"):
+        return np.exp(power / 2)
 
 
 def non_negative(weights: np.ndarray, energies: np.ndarray) -> np.ndarray:

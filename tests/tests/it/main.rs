@@ -11,6 +11,7 @@ mod abi;
 mod architecture;
 mod bands;
 mod common;
+mod decibel_fits;
 mod device_abi;
 mod edges;
 mod fields;

@@ -23,6 +23,7 @@ pub mod butterworth;
 mod chebyshev;
 mod circle;
 pub mod dct;
+pub mod decibel_fit;
 mod direct_form;
 pub mod envelope;
 pub mod estimation;

@@ -412,7 +412,7 @@ mod tests {
             let given = Exploration { speed_mm_s: Some(speed), force_n: Some(FORCE_N) };
             segment_take(&Take { recording, given }, &SpectrumOptions::default(), false).unwrap()
         });
-        let all = ConditionSpectra::new(takes.collect(), Averaging::Rms, false).unwrap();
+        let all = ConditionSpectra::new(takes.collect(), &AssetRequest::new("law")).unwrap();
         let found = all.law.frequency_speed;
         Some([found.estimate?, found.standard_error?])
     }

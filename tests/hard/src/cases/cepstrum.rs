@@ -21,14 +21,23 @@ pub(crate) const SECTION: Section = Section {
 const BAND: Band = Band::TACTILE;
 /// The band of a 200 Hz recording: 17 bins.
 const NARROW: Band = Band { low_hz: 20.0, high_hz: 100.0 };
-const INVERSES: [&str; 3] = ["pinv", "nnls", "interpolate"];
+/// Every inverse, and every way to fit.
+const WAYS: [[&str; 2]; 6] = [
+    ["pinv", "transform"],
+    ["nnls", "transform"],
+    ["interpolate", "transform"],
+    ["log-log", "transform"],
+    ["pinv", "decibel"],
+    ["log-log", "decibel"],
+];
 
-/// Whether a spectrum is fitted with these bands and coefficients by every inverse, at unit RMS,
+/// Whether a spectrum is fitted with these bands and coefficients, by every inverse and way to fit, at unit RMS,
 /// and with a level within 20 dB of its own.
 fn lives(magnitude: &[f64], bands: &str, coefficients: &str) -> f64 {
     let mfcc = model("mfcc");
-    failures(INVERSES.map(|inverse| {
-        let options = [("bands", bands), ("coefficients", coefficients), ("inverse", inverse)];
+    failures(WAYS.map(|[inverse, fit]| {
+        let size = [("bands", bands), ("coefficients", coefficients)];
+        let options = [size[0], size[1], ("inverse", inverse), ("fit", fit)];
         let Ok(fitted) = fit_with(&mfcc, magnitude, &[], &options) else {
             return false;
         };
@@ -41,18 +50,19 @@ fn lives(magnitude: &[f64], bands: &str, coefficients: &str) -> f64 {
             && played.is_ok()
             && off_db.abs() < 20.0;
         if !holds {
-            println!("{bands} bands, {coefficients} coefficients, {inverse}: {off_db} dB");
+            println!("{bands} bands, {coefficients} coefficients, {inverse}, {fit}: {off_db} dB");
         }
         holds
     }))
 }
 
-/// Failures of fits, by every inverse, in a band in which most filters are empty.
+/// Failures of fits, by every inverse and way to fit, in a band in which most filters are empty.
 fn empty_bands(bands: &str) -> f64 {
     let (mfcc, grid) = (model("mfcc"), NARROW.grid_hz());
     let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
-    failures(INVERSES.map(|inverse| {
-        let options = [("bands", bands), ("coefficients", bands), ("inverse", inverse)];
+    failures(WAYS.map(|[inverse, fit]| {
+        let size = [("bands", bands), ("coefficients", bands)];
+        let options = [size[0], size[1], ("inverse", inverse), ("fit", fit)];
         let fitted = mfcc.fit(&FitInput {
             band: NARROW,
             frequency_hz: &grid,
@@ -191,14 +201,14 @@ const CASES: &[Case] = &[
     within(
         "17 bins, 26 and 128 bands, most of them empty",
         "MFCC",
-        "fit, magnitude, render, each inverse, all coefficients",
+        "fit, magnitude, render, each inverse and fit, all coefficients",
         none("unit RMS"),
         || ["26", "128"].map(empty_bands).iter().sum(),
     ),
     within(
         "friction noise, 128 bands",
         "MFCC",
-        "fit, magnitude, render, each inverse, 1 to 128 coefficients",
+        "fit, magnitude, render, each inverse and fit, 1 to 128 coefficients",
         none("unit RMS, level within 20 dB"),
         || {
             let magnitude = spectrum(&friction());
@@ -208,7 +218,7 @@ const CASES: &[Case] = &[
     within(
         "friction noise, more coefficients than bands: 128 of 2, 3 and 26",
         "MFCC",
-        "fit, magnitude, render, each inverse",
+        "fit, magnitude, render, each inverse and fit",
         none("unit RMS, level within 20 dB"),
         || {
             let magnitude = spectrum(&friction());
@@ -218,7 +228,7 @@ const CASES: &[Case] = &[
     within(
         "bands of zero power: one bin, one half of the band, all but one bin",
         "MFCC",
-        "fit, magnitude, render, each inverse",
+        "fit, magnitude, render, each inverse and fit",
         none("unit RMS, level within 20 dB"),
         || {
             let only = |keep: fn(usize) -> bool| -> Vec<f64> {
@@ -231,7 +241,7 @@ const CASES: &[Case] = &[
     within(
         "a tone, tones 120 dB apart",
         "MFCC",
-        "fit, magnitude, render, each inverse, 26 coefficients",
+        "fit, magnitude, render, each inverse and fit, 26 coefficients",
         none("unit RMS, level within 20 dB"),
         || {
             let spectra = [spectrum(&tone(500.0)), spectrum(&far_apart())];

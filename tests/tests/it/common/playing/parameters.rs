@@ -82,10 +82,10 @@ fn arma(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     [list(&lines(poles)), list(&lines(zeros)), vec![rate_hz]].concat()
 }
 
-/// All three inverses; fewer coefficients than bands, and more.
+/// All four inverses; fewer coefficients than bands, and more.
 fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
     let (count, bands, inverse) =
-        [(10, 26.0, 0.0), (10, 26.0, 1.0), (13, 40.0, 2.0), (12, 9.0, 1.0), (5, 12.0, 0.0)]
+        [(10, 26.0, 0.0), (10, 26.0, 1.0), (13, 40.0, 2.0), (12, 9.0, 3.0), (5, 12.0, 0.0)]
             [asset % 5];
     let mut cepstrum = draw.list(count, -1.0, 1.0);
     cepstrum[0] = draw.within(-40.0, -20.0);

@@ -1,9 +1,9 @@
 //! Fits the parameters of a spectrum's shape to band levels in decibels.
 //!
 //! The levels are the energies in 30 triangular bands from edge to edge of the frequency band, on
-//! the axis [`edge_to_edge`]: the bands of the model Bands at its defaults. Third octaves would do
-//! as well, but the project judges all models by the third-octave error, so no model is fitted to
-//! it. Only the shape counts: the energies of spectrum and model are relative to their sums.
+//! the axis [`edge_to_edge`]: the bands of the model Bands at its defaults. Fits to third octaves
+//! would have a smaller third-octave error, but the project judges all models by this error, so no
+//! model is fitted to it. Only the shape counts: the energies of spectrum and model are relative to their sums.
 //!
 //! The search is the Levenberg–Marquardt method. It computes derivatives by differences, so a model
 //! has to provide only its power.
@@ -96,8 +96,8 @@ impl DecibelFit {
                 }
                 damping *= 8.0;
             }
-            // Written so that a cost that is NaN ends the search.
-            if !(before - best.cost > TOLERANCE * before) {
+            let gain = before - best.cost;
+            if gain.is_nan() || gain <= TOLERANCE * before {
                 break;
             }
         }

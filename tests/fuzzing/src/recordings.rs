@@ -115,8 +115,8 @@ fn take_spectra(recording: &Recording) {
             match TextureSpectrum::average(&parts, averaging) {
                 Ok(spectrum) => {
                     finite("magnitude", spectrum.magnitude);
+                    finite("repeatability", spectrum.repeatability.map(|of| of.band_rms_db));
                     finite("signal", spectrum.signal);
-                    finite("repeatability", spectrum.repeatability_rms_db());
                 }
                 Err(error) => sentence(&error),
             }

@@ -385,7 +385,7 @@ mod tests {
     use super::*;
     use crate::conditions::ConditionSpectra;
     use crate::simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
-    use crate::{Averaging, Exploration, SpectrumOptions, Take, segment_take};
+    use crate::{AssetRequest, Exploration, SpectrumOptions, Take, segment_take};
 
     const FORCE_N: f64 = 0.4;
     const SPEEDS_MM_S: [f64; 3] = [40.0, 80.0, 160.0];

@@ -102,7 +102,7 @@ fn an_envelope_of_one_part_is_mostly_found_in_this_part() {
     for (part, wanted) in [[3.0, 0.0], [0.0, 3.0]].into_iter().enumerate() {
         let found = decibels(vec![noise(wanted, 60.0, 1, 1)]);
         println!("{wanted:?} {found:?}");
-        assert!((found[part] / 3.0 - 1.0).abs() < 0.25, "{found:?}");
+        assert!((found[part] / 3.0 - 1.0).abs() < 0.35, "{found:?}");
         assert!(found[1 - part] < 0.5 * found[part], "{found:?}");
     }
 }

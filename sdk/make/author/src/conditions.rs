@@ -187,7 +187,8 @@ impl ConditionSpectra {
         let quantity = all.first().map_or_else(Default::default, |one| one.spectrum.quantity);
         let given = request.law.map(|given| given.over(law).reassumed(quantity, contact));
         let law = given.unwrap_or(law);
-        if !request.recorded_only {
+        let follow = request.models.iter().all(|one| one.model.follows_motion());
+        if !(request.recorded_only || follow) {
             let mut computed = between::conditions(&all, &law);
             computed.extend(tilted::conditions(&all, &all_parts, &law, contact, averaging)?);
             all.extend(computed);

@@ -140,6 +140,11 @@ fn fit_model(
         fit_spectrum(model, &choice.options, &one.spectrum, one.motion(), level)
     };
     for (condition, one) in all.iter().enumerate() {
+        // A model that follows the motion plays other speeds itself, and cannot be fitted to a
+        // spectrum that was recorded nowhere.
+        if model.follows_motion() && !one.spectrum.is_recorded() {
+            continue;
+        }
         let reference = one.spectrum.as_ref();
         let fit = fit_at(one)?;
         let (magnitude, measured) = measure(model, &fit.stored, fit.level_rms, reference)?;

@@ -3,6 +3,7 @@
 //! A grid of 405 conditions has 13 numbers at each of them, each behind its key. Deflate takes more
 //! bytes for the keys than a table takes in all.
 
+#[cfg(feature = "write")]
 use std::collections::BTreeSet;
 
 use serde_json::{Map, Value};

@@ -233,7 +233,7 @@ impl AssetSummary {
         for r in &self.manifest.representations {
             let all: Vec<LeftOut> = r.at.iter().filter_map(|at| at.left_out).collect();
             // With one condition, there is nothing to summarise over conditions.
-            if all.is_empty() || r.at.len() < 2 {
+            if all.len() < 2 {
                 continue;
             }
             if !has_heading {

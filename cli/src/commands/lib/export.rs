@@ -44,8 +44,8 @@ pub(crate) struct ExportAll {
     #[arg(long = "where", value_name = "FIELD=GLOB")]
     filters: Vec<Filter>,
 
-    /// Condition to export, e.g. speed=80,force=0.4 (mm/s, N), or `strongest` [default: the first
-    /// condition, or the strongest condition if the first is silent]
+    /// Condition to export, e.g. speed=80,force=0.4 (mm/s, N), or `strongest` of the recorded ones
+    /// [default: the first condition, or the strongest condition if the first is silent]
     #[arg(long, value_name = "CONDITION")]
     at: Option<At>,
 
@@ -209,10 +209,12 @@ impl ExportAll {
             Some(At::Strongest) => {
                 let manifest = texture.manifest();
                 let own = manifest.representations.iter().find(|r| r.model == representation.id());
-                let levels = own.into_iter().flat_map(|own| &own.at);
-                let strongest = levels.max_by(|a, b| a.level_rms.total_cmp(&b.level_rms));
-                let at = strongest.and_then(|at| manifest.conditions.get(at.condition));
-                at.map(|at| representation.motion(at.speed_mm_s, at.force_n))
+                let all = own.into_iter().flat_map(|own| &own.at);
+                let all = all
+                    .filter_map(|at| Some((at.level_rms, manifest.conditions.get(at.condition)?)));
+                let recorded = all.filter(|(_, condition)| condition.is_recorded());
+                let strongest = recorded.max_by(|(a, _), (b, _)| a.total_cmp(b));
+                strongest.map(|(_, at)| representation.motion(at.speed_mm_s, at.force_n))
             }
         })
     }

@@ -307,6 +307,12 @@ pub struct Condition {
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
+    /// Returns whether the condition was recorded. Otherwise it was computed from recorded ones,
+    /// and may lie outside their speeds.
+    pub fn is_recorded(&self) -> bool {
+        self.segments != Some(0)
+    }
+
     /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both
     /// numbers must not be negative.
     pub fn is_same(a: f64, b: f64) -> bool {

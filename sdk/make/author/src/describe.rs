@@ -63,7 +63,7 @@ fn felt_error_rms_db(representation: &Representation<'_>) -> Option<f64> {
     let (band, manifest) = (texture.band(), texture.manifest());
     let frequency_hz = band.grid_hz();
     let is_recorded = |condition: usize| {
-        manifest.conditions.get(condition).is_some_and(|condition| condition.segments != Some(0))
+        manifest.conditions.get(condition).is_some_and(htex_format::Condition::is_recorded)
     };
     let at = representation.data().at.iter().filter(|at| is_recorded(at.condition));
     let errors = at.map(|at| {

@@ -205,7 +205,7 @@ impl MissedGate {
 impl AssetReport {
     fn new(made: &JobResult, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
-        let conditions = || manifest.conditions.iter().filter(|c| c.segments != Some(0));
+        let conditions = || manifest.conditions.iter().filter(|c| c.is_recorded());
         // A representation that a file of another format states has no error.
         let errors = manifest.representations.iter().filter_map(|representation| {
             let qualities = representation.at.iter().filter_map(|at| at.quality.as_ref());

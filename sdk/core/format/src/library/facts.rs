@@ -42,8 +42,7 @@ impl Facts {
 
     pub(crate) fn new(manifest: &Manifest) -> Self {
         let representations = manifest.representations.iter();
-        // A computed condition may lie outside the recorded speeds.
-        let known = manifest.conditions.iter().filter(|c| c.segments != Some(0));
+        let known = manifest.conditions.iter().filter(|c| c.is_recorded());
         // Adding zero turns -0, which a manifest may have, into 0.
         let speeds = known.clone().filter_map(|c| c.speed_mm_s).map(|x| x + 0.0);
         let forces = known.filter_map(|c| c.force_n).map(|x| x + 0.0);

@@ -148,7 +148,8 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
         }
         if !all.iter().any(|other| is_same(other, condition)) {
             let Condition { speed_mm_s, force_n, .. } = *condition;
-            all.push(Condition { speed_mm_s, force_n, ..Condition::default() });
+            let segments = if condition.is_recorded() { None } else { Some(0) };
+            all.push(Condition { speed_mm_s, force_n, segments, ..Condition::default() });
         }
     }
     Ok(all)

@@ -229,11 +229,11 @@ pub fn felt(
     // each of them is too weak by itself.
     let total = |all: &[Option<f64>]| self::level_db(all.iter().flatten().sum()).max(0.0);
     let sensations = reference_db.iter().zip(&level_db);
-    let sensations = sensations.map(|(r, m)| sensation(*m) - sensation(*r));
+    let sensations: Vec<f64> = sensations.map(|(r, m)| sensation(*m) - sensation(*r)).collect();
     Felt {
-        sensation_error_rms: htex_dsp::bands::rms(&sensations.collect::<Vec<f64>>()),
+        sensation_error_rms: htex_dsp::bands::rms(&sensations),
         centre_hz: bands.iter().map(|k| centre_hz(*k)).collect(),
-        error_rms_db: if felt.is_empty() { 0.0 } else { htex_dsp::bands::rms(&felt) },
+        error_rms_db: htex_dsp::bands::rms(&felt),
         largest_error_db: error_db.iter().fold(0.0, |most, e| f64::max(most, e.abs())),
         total_error_db: total(&theirs) - total(&ours),
         reference_db,
@@ -372,6 +372,16 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Above the third octaves there is nothing to compare.
+    #[test]
+    fn a_band_without_third_octaves_has_no_difference() {
+        let band = Band { low_hz: 1100.0, high_hz: 2000.0 };
+        let (hertz, magnitude) = (band.grid_hz(), vec![0.1; band.bins()]);
+        let reference = SpectrumRef { band, frequency_hz: &hertz, magnitude: &magnitude };
+        let found = felt(reference, &magnitude, Quantity::LateralForce, &Listener::default());
+        assert_eq!((found.error_rms_db, found.sensation_error_rms), (0.0, 0.0));
     }
 
     /// A difference that lies entirely below the threshold is not felt; a difference of 6 dB far

@@ -166,10 +166,11 @@ def leaf(page, shared, payload, minor):
         quantities = ("lateral_force", "normal_force", "acceleration", "velocity", "displacement")
         for row in rows:
             row["quantity"] = quantities[page.take(1)[0]]
-        for row in rows:
-            felt = page.varint()
-            if felt:
-                row["felt_error_rms_db"] = (felt - 1) / 100
+        for key in ("felt_error_rms_db", "held_out_error_db"):
+            for row in rows:
+                error = page.varint()
+                if error:
+                    row[key] = (error - 1) / 100
     return rows
 
 

@@ -109,6 +109,27 @@ fn textures_are_found_by_rights_quantity_and_felt_difference() {
     assert!(wrong.code() == 2 && wrong.error().contains("lateral-force"), "{}", wrong.error());
 }
 
+/// The held-out error of the index is the one that the texture states.
+#[test]
+fn textures_are_found_by_their_held_out_error() {
+    let place = Place::new();
+    place.simulated("vinyl.csv", &["--surface", "vinyl", "--seconds", "10"]);
+    for line in [
+        "fit vinyl.csv --model bands --license CC0-1.0 -o vinyl.htex",
+        "lib pack all.htexlib vinyl.htex",
+    ] {
+        let run = place.run(&line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(run.code(), 0, "{}", run.error());
+    }
+    let info = place.json(&["info", "vinyl.htex", "--json"]);
+    let stated = info["representations"][0]["at"][0]["held_out_error_db"].as_f64().unwrap();
+    let known = find(&place, &[])[0]["held_out_error_db"].as_f64().unwrap();
+    // Rounded up to hundredths.
+    assert!(known >= stated && known < stated + 0.0101, "{known}, {stated}");
+    let found = |most: f64| find(&place, &["--max-held-out", &most.to_string()]);
+    assert_eq!([names(&found(known)).len(), names(&found(known - 0.01)).len()], [1, 0]);
+}
+
 #[test]
 fn textures_are_found_by_their_spectra() {
     let place = place();

@@ -15,7 +15,7 @@ from .findings import Refused
 
 MAX_TEXT, MAX_LIST, MAX_OBJECTS = 255, 64, 256
 MAX_PART = 250
-MAX_METADATA, MAX_FELT = 8192, 100_001
+MAX_METADATA, MAX_ERROR = 8192, 100_001
 MINOR = 1
 QUANTITIES = ("lateral_force", "normal_force", "acceleration", "velocity", "displacement")
 FORBIDDEN = set('\\:*?"<>|')
@@ -270,7 +270,7 @@ def read_texts(cursor: Cursor) -> list[str]:
 
 
 def read_rights(cursor: Cursor, entries: list[Entry]) -> None:
-    """Licences, authors, quantities and felt differences."""
+    """Licences, authors, quantities, felt differences and held-out errors."""
     texts = read_texts(cursor)
     columns = []
     for _ in range(2):
@@ -283,8 +283,9 @@ def read_rights(cursor: Cursor, entries: list[Entry]) -> None:
         cursor.fail("no such quantity")
     for entry, licence, author, quantity in zip(entries, *columns, quantities):
         entry.rights = (licence, author, QUANTITIES[quantity])
-    if any(cursor.varint() > MAX_FELT for _ in entries):
-        cursor.fail("a felt difference is too large")
+    for _ in range(2):
+        if any(cursor.varint() > MAX_ERROR for _ in entries):
+            cursor.fail("an error is too large")
 
 
 def start(text: str | None) -> str | None:

@@ -60,6 +60,10 @@ pub(crate) struct Find {
     #[arg(long, value_name = "NAME")]
     quantity: Option<Quantity>,
 
+    /// List only textures whose held-out error is known and at most this, decibels
+    #[arg(long, value_name = "DB", value_parser = not_negative)]
+    max_held_out: Option<f64>,
+
     /// List only textures whose felt difference from their recordings is known and at most this,
     /// decibels
     #[arg(long, value_name = "DB", value_parser = not_negative)]
@@ -161,6 +165,7 @@ impl Find {
             author: self.author.clone(),
             quantity: self.quantity,
             felt_error_rms_db: self.max_felt,
+            held_out_error_db: self.max_held_out,
         }
     }
 

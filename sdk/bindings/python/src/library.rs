@@ -142,7 +142,7 @@ impl Library {
 
     /// Returns the entries of the textures that match all the given criteria.
     #[allow(clippy::too_many_arguments, reason = "the keywords of a Python function")]
-    #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None, license=None, author=None, quantity=None, max_felt_db=None))]
+    #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None, license=None, author=None, quantity=None, max_felt_db=None, max_held_out_db=None))]
     fn find<'py>(
         &self,
         py: Python<'py>,
@@ -155,6 +155,7 @@ impl Library {
         author: Option<String>,
         quantity: Option<&str>,
         max_felt_db: Option<f64>,
+        max_held_out_db: Option<f64>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let quantity = quantity.map(str::parse).transpose();
         let query = Query {
@@ -167,6 +168,7 @@ impl Library {
             author,
             quantity: quantity.map_err(|error: UnknownName| option(error.to_string()))?,
             felt_error_rms_db: max_felt_db,
+            held_out_error_db: max_held_out_db,
         };
         let entries = py.detach(|| self.matching(&query))?;
         entries.iter().map(|entry| entry_data(py, entry)).collect()
@@ -423,6 +425,7 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     fields.set_item("author", entry.author.as_deref())?;
     fields.set_item("quantity", entry.quantity.map(Quantity::name))?;
     fields.set_item("felt_error_rms_db", entry.felt_error_rms_db)?;
+    fields.set_item("held_out_error_db", entry.held_out_error_db)?;
     fields.set_item("bytes", entry.bytes)?;
     fields.set_item("blake3", entry.blake3_hex())?;
     data(py, "LibraryEntry", &fields)

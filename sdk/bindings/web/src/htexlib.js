@@ -202,7 +202,8 @@ export class Library extends Handle {
 
   /**
    * Returns the entries that match a query: `words` in the name or a tag, `tags`, a `speed`, a
-   * `force`, a `model`, a `license`, an `author`, a `quantity`, a largest `felt` difference.
+   * `force`, a `model`, a `license`, an `author`, a `quantity`, a largest
+   * `felt` difference or `held_out` error.
    */
   async *find(query) {
     const text = JSON.stringify(query);

@@ -21,6 +21,7 @@ pub fn describe(asset: &Asset) -> Description {
         Some(representation) => Description {
             spectrum: spectrum(&representation),
             felt_error_rms_db: felt_error_rms_db(&representation),
+            held_out_error_db: held_out_error_db(&representation),
         },
         None => Description::default(),
     }
@@ -84,4 +85,11 @@ fn felt_error_rms_db(representation: &Representation<'_>) -> Option<f64> {
         Some(FeltError::new(&recorded, &played, None).error_rms_db)
     });
     errors.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+}
+
+/// Returns the held-out error at the worst recorded condition; `None` if the asset states none.
+fn held_out_error_db(representation: &Representation<'_>) -> Option<f64> {
+    let manifest = representation.texture().manifest();
+    let held_out = representation.data().at.iter().filter_map(|at| manifest.held_out(at));
+    held_out.map(|held_out| held_out.held_out_error_db).reduce(f64::max)
 }

@@ -246,6 +246,7 @@ struct QueryDocument {
     author: Option<String>,
     quantity: Option<htex::format::Quantity>,
     felt: Option<f64>,
+    held_out: Option<f64>,
 }
 
 impl From<QueryDocument> for Query {
@@ -260,6 +261,7 @@ impl From<QueryDocument> for Query {
             author: asked.author,
             quantity: asked.quantity,
             felt_error_rms_db: asked.felt,
+            held_out_error_db: asked.held_out,
         }
     }
 }

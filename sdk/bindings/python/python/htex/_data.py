@@ -63,6 +63,9 @@ class LibraryEntry:
     felt_error_rms_db: float | None
     """Felt difference from the recordings, RMS over third octaves, decibels; ``None`` if it is
     not known."""
+    held_out_error_db: float | None
+    """Held-out error, RMS over third octaves, decibels; ``None`` if the texture does not state
+    it."""
     bytes: int
     """Size of the texture's file, bytes."""
     blake3: str

@@ -10,7 +10,7 @@ import { Name } from "../parts/name.tsx";
 import { NoPicture, Picture } from "../parts/picture.tsx";
 import { whenFree } from "../slices.ts";
 import { ALL, type Filters } from "./filters.ts";
-import { addressOf, entries, filters, found, isWhole, knowsFelt, licenses, quantities, tags } from "./state.ts";
+import { addressOf, entries, filters, found, isWhole, knowsFelt, knowsHeldOut, licenses, quantities, tags } from "./state.ts";
 
 /** Cards that are there at once, and cards that are added where the end comes near. */
 const [FIRST, MORE] = [48, 24];
@@ -44,8 +44,8 @@ function Card({ library, entry }: { library: Library; entry: LibraryEntry }) {
       own?.texture.free();
     };
   }, [entry]);
-  const { license, felt_error_rms_db: felt } = entry;
-  const facts = [license, felt !== undefined && `felt error ${felt.toFixed(1)} dB`].filter(Boolean).join(" · ");
+  const { license, held_out_error_db: heldOut, felt_error_rms_db: felt } = entry;
+  const facts = [license, heldOut !== undefined && `held-out error ${heldOut.toFixed(1)} dB`, felt !== undefined && `felt error ${felt.toFixed(1)} dB`].filter(Boolean).join(" · ");
   return (
     <li>
       <a class="card" href={addressOf(entry.name)}>
@@ -116,6 +116,7 @@ function Filtering() {
       <Choice label="Licence" value={now.license} options={licenses.value} onValue={(license) => narrow({ license })} />
       <Choice label="Quantity" value={now.quantity} options={quantities.value} onValue={(quantity) => narrow({ quantity })} />
       <Most label="Recorded at, mm/s" value={now.speed} step={1} onValue={(speed) => narrow({ speed })} />
+      {knowsHeldOut.value && <Most label="Held-out error at most, dB" value={now.heldOut} step={0.1} onValue={(heldOut) => narrow({ heldOut })} />}
       {knowsFelt.value && <Most label="Felt error at most, dB" value={now.felt} step={0.1} onValue={(felt) => narrow({ felt })} />}
       <Tags />
     </search>

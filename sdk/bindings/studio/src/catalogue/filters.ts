@@ -11,9 +11,11 @@ export interface Filters {
   readonly speed: number | null;
   /** Largest felt difference from the recordings, dB. */
   readonly felt: number | null;
+  /** Largest held-out error, dB. */
+  readonly heldOut: number | null;
 }
 
-export const ALL: Filters = { search: "", tag: null, license: null, quantity: null, speed: null, felt: null };
+export const ALL: Filters = { search: "", tag: null, license: null, quantity: null, speed: null, felt: null, heldOut: null };
 
 /** The name and the tags in small letters, which a search looks at for each texture. */
 const texts = new WeakMap<LibraryEntry, string>();
@@ -32,7 +34,7 @@ function isRecorded({ conditions: { speed_mm_s: range } }: LibraryEntry, speed: 
 }
 
 /** Returns the entries that match all filters. */
-export function matching(entries: readonly LibraryEntry[], { search, tag, license, quantity, speed, felt }: Filters): readonly LibraryEntry[] {
+export function matching(entries: readonly LibraryEntry[], { search, tag, license, quantity, speed, felt, heldOut }: Filters): readonly LibraryEntry[] {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   return entries.filter(
     (entry) =>
@@ -41,6 +43,7 @@ export function matching(entries: readonly LibraryEntry[], { search, tag, licens
       (license === null || (entry.license ?? "") === license) &&
       (quantity === null || entry.quantity === quantity) &&
       (speed === null || isRecorded(entry, speed)) &&
+      (heldOut === null || (entry.held_out_error_db ?? Infinity) <= heldOut) &&
       (felt === null || (entry.felt_error_rms_db ?? Infinity) <= felt),
   );
 }

@@ -14,6 +14,7 @@ export const found = computed(() => matching(entries.value, filters.value));
 export const tags = computed(() => counted(entries.value.flatMap((entry) => entry.tags)));
 export const licenses = computed(() => counted(entries.value.map((entry) => entry.license ?? "")));
 export const quantities = computed(() => counted(entries.value.flatMap((entry) => entry.quantity ?? [])));
+export const knowsHeldOut = computed(() => entries.value.some((entry) => entry.held_out_error_db !== undefined));
 export const knowsFelt = computed(() => entries.value.some((entry) => entry.felt_error_rms_db !== undefined));
 
 /** The address of the page of the build. No texture has such a name, since none begins with a slash. */

@@ -12,6 +12,9 @@ pub struct Description {
     /// The felt difference between the texture and its recordings, RMS over third-octave bands, at
     /// the worst condition, decibels; `None` if it is not known.
     pub felt_error_rms_db: Option<f64>,
+    /// The held-out error of the texture, RMS over third-octave bands, at the worst recorded
+    /// condition, decibels; `None` if the texture does not state it.
+    pub held_out_error_db: Option<f64>,
 }
 
 impl Description {
@@ -21,6 +24,7 @@ impl Description {
         Self {
             spectrum: self.spectrum.or(other.spectrum),
             felt_error_rms_db: self.felt_error_rms_db.or(other.felt_error_rms_db),
+            held_out_error_db: self.held_out_error_db.or(other.held_out_error_db),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::library::coarse_spectrum::CoarseSpectrum;
 use crate::library::entry::{Conditions, Entry, Interval};
 use crate::library::leaf::{
-    CONTACTS, FORCE, MOST_FELT, ONE_FORCE, ONE_SPEED, QUANTITIES, SOURCES, SPEED, length,
+    CONTACTS, FORCE, LARGEST_ERROR, ONE_FORCE, ONE_SPEED, QUANTITIES, SOURCES, SPEED, length,
 };
 use crate::library::metadata::LibraryMetadata;
 use crate::library::page;
@@ -83,7 +83,7 @@ impl Pages {
             .iter()
             .map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
         // After the name and words: conditions (33), own length, number of cuts (2), cuts, hash
-        // (32), contact and law (25), and quantity and felt difference (4).
+        // (32), contact and law (25), quantity and two errors (7).
         name + words
             + 33
             + varint_bytes(length(&entry.place.own))
@@ -91,7 +91,7 @@ impl Pages {
             + cuts.sum::<usize>()
             + 32
             + 25
-            + 4
+            + 7
     }
 
     /// Finishes the index.
@@ -205,13 +205,18 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     entries.iter().for_each(|e| put_choice(&mut page, &rights, e.author.as_deref()));
     let number = |e: &Entry| QUANTITIES.iter().position(|q| Some(*q) == e.quantity);
     page.extend(entries.iter().map(|e| number(e).unwrap_or_default() as u8));
-    for felt in entries.iter().map(|e| e.felt_error_rms_db) {
-        // Rounded up, so that a search for at most this error finds no texture that has more. The
-        // small part is for hundredths that a decimal number cannot represent.
-        let hundredths = felt.map(|db| libm::ceil(db * 100.0 - 1e-6).clamp(0.0, MOST_FELT as f64));
-        put_varint(&mut page, hundredths.map_or(0, |hundredths| hundredths as u64 + 1));
-    }
+    entries.iter().for_each(|e| put_error(&mut page, e.felt_error_rms_db));
+    entries.iter().for_each(|e| put_error(&mut page, e.held_out_error_db));
     page
+}
+
+/// Appends 0, or one more than an error in hundredths of a decibel.
+fn put_error(page: &mut Vec<u8>, error_db: Option<f64>) {
+    // Rounded up, so that a search for at most this error finds no texture that has more. The small
+    // part is for hundredths that a decimal number cannot represent.
+    let hundredths =
+        error_db.map(|db| libm::ceil(db * 100.0 - 1e-6).clamp(0.0, LARGEST_ERROR as f64));
+    put_varint(page, hundredths.map_or(0, |hundredths| hundredths as u64 + 1));
 }
 
 /// Appends 0, or one more than the index of a text in `texts`.

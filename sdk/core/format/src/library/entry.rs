@@ -33,7 +33,7 @@ pub struct Entry {
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
     /// Licence of the texture; `None` if it states none. The index has the first 255 bytes. This
-    /// and the next three values are `None` in a library of version 1.0, whose index lacks them.
+    /// and the next four values are `None` in a library of version 1.0, whose index lacks them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
     /// Who made the texture; `None` if it does not say. The index has the first 255 bytes.
@@ -46,6 +46,11 @@ pub struct Entry {
     /// worst condition, decibels; `None` if the writer did not know it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub felt_error_rms_db: Option<f64>,
+    /// Held-out error: the difference between the texture, fitted to one half of its recordings,
+    /// and the other half, RMS over third-octave bands, at the worst recorded condition, decibels;
+    /// `None` if the texture does not state it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out_error_db: Option<f64>,
     /// Size of the texture's `.htex` file, bytes.
     pub bytes: u64,
     /// BLAKE3 of the texture's `.htex` file; hexadecimal in JSON.

@@ -38,6 +38,7 @@ pub(crate) fn indexed(
             author,
             quantity: Some(texture.quantity),
             felt_error_rms_db: texture.description.felt_error_rms_db,
+            held_out_error_db: texture.description.held_out_error_db,
             bytes: texture.bytes,
             blake3: texture.blake3,
             place,

@@ -44,8 +44,8 @@ pub(crate) const QUANTITIES: [Quantity; 5] = [
     Quantity::Velocity,
     Quantity::Displacement,
 ];
-/// Largest felt difference in the index, hundredths of a decibel.
-pub(crate) const MOST_FELT: u64 = 100_000;
+/// Largest error in the index, hundredths of a decibel.
+pub(crate) const LARGEST_ERROR: u64 = 100_000;
 
 pub(crate) struct LeafReader<'a> {
     pub leaf: usize,
@@ -73,6 +73,7 @@ struct Newer {
     author: Option<String>,
     quantity: Option<Quantity>,
     felt_error_rms_db: Option<f64>,
+    held_out_error_db: Option<f64>,
 }
 
 impl LeafReader<'_> {
@@ -95,7 +96,7 @@ impl LeafReader<'_> {
             let (contact, law) = law;
             let bytes = self.check_place(i, &name, &place)?;
             let place = TexturePlace { leaf: self.leaf, row: i, ..place };
-            let Newer { license, author, quantity, felt_error_rms_db } = newer;
+            let Newer { license, author, quantity, felt_error_rms_db, held_out_error_db } = newer;
             Ok(Entry {
                 name,
                 tags,
@@ -107,6 +108,7 @@ impl LeafReader<'_> {
                 author,
                 quantity,
                 felt_error_rms_db,
+                held_out_error_db,
                 bytes,
                 blake3,
                 place,
@@ -322,21 +324,27 @@ fn newer(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<Newer>, WireError>
         let quantity = QUANTITIES.get(usize::from(cursor.byte()?));
         quantity.copied().ok_or(cursor.malformed("a quantity does not exist"))
     })?;
-    let felt = column(cursor, count, |cursor| {
-        let number = cursor.varint()?;
-        if number > MOST_FELT + 1 {
-            return Err(cursor.malformed("a felt difference exceeds 1000 dB"));
-        }
-        Ok(number.checked_sub(1).map(|hundredths| hundredths as f64 / 100.0))
-    })?;
-    let rows = licenses.into_iter().zip(authors).zip(quantities.into_iter().zip(felt));
-    let rows = rows.map(|((license, author), (quantity, felt_error_rms_db))| Newer {
+    let felt = column(cursor, count, error_db)?;
+    let held_out = column(cursor, count, error_db)?;
+    let errors = felt.into_iter().zip(held_out);
+    let rows = licenses.into_iter().zip(authors).zip(quantities.into_iter().zip(errors));
+    let rows = rows.map(|((license, author), (quantity, errors))| Newer {
         license,
         author,
         quantity: Some(quantity),
-        felt_error_rms_db,
+        felt_error_rms_db: errors.0,
+        held_out_error_db: errors.1,
     });
     Ok(rows.collect())
+}
+
+/// Reads an error in decibels; `None` if it is not known.
+fn error_db(cursor: &mut Cursor<'_>) -> Result<Option<f64>, WireError> {
+    let number = cursor.varint()?;
+    if number > LARGEST_ERROR + 1 {
+        return Err(cursor.malformed("an error exceeds 1000 dB"));
+    }
+    Ok(number.checked_sub(1).map(|hundredths| hundredths as f64 / 100.0))
 }
 
 fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, WireError> {

@@ -41,6 +41,9 @@ pub struct Query {
     /// Largest felt difference between the texture and its recordings, decibels. A texture whose
     /// felt difference is not known does not match.
     pub felt_error_rms_db: Option<f64>,
+    /// Largest held-out error of the texture, decibels. A texture whose held-out error is not known
+    /// does not match.
+    pub held_out_error_db: Option<f64>,
 }
 
 impl Query {
@@ -61,9 +64,8 @@ impl Query {
             && is_like(self.license.as_ref(), entry.license.as_ref())
             && is_like(self.author.as_ref(), entry.author.as_ref())
             && self.quantity.is_none_or(|quantity| entry.quantity == Some(quantity))
-            && self
-                .felt_error_rms_db
-                .is_none_or(|most| entry.felt_error_rms_db.is_some_and(|felt| felt <= most))
+            && is_at_most(entry.held_out_error_db, self.held_out_error_db)
+            && is_at_most(entry.felt_error_rms_db, self.felt_error_rms_db)
     }
 
     /// Returns whether the query asks for a property that the index of a library of version 1.0
@@ -73,6 +75,7 @@ impl Query {
             || self.author.is_some()
             || self.quantity.is_some()
             || self.felt_error_rms_db.is_some()
+            || self.held_out_error_db.is_some()
     }
 }
 
@@ -97,6 +100,10 @@ fn is_like(pattern: Option<&String>, text: Option<&String>) -> bool {
         text = after;
     }
     text.ends_with(end)
+}
+
+fn is_at_most(error: Option<f64>, most: Option<f64>) -> bool {
+    most.is_none_or(|most| error.is_some_and(|error| error <= most))
 }
 
 fn is_among(asked: Option<f64>, known: Option<Interval>) -> bool {

@@ -230,6 +230,7 @@ impl<S: LibrarySource> Library<S> {
         Ok(Description {
             spectrum: spectra.get(entry.place.row).copied().flatten(),
             felt_error_rms_db: entry.felt_error_rms_db,
+            held_out_error_db: entry.held_out_error_db,
         })
     }
 
@@ -388,6 +389,7 @@ impl<S: LibrarySource> Described<'_, S> {
         Ok(Description {
             spectrum: self.spectra.get(entry.place.row).copied().flatten(),
             felt_error_rms_db: entry.felt_error_rms_db,
+            held_out_error_db: entry.held_out_error_db,
         })
     }
 }

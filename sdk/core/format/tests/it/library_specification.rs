@@ -74,7 +74,7 @@ fn the_example_is_what_the_writer_and_another_encoder_write() {
     let (_, file) = pack("One", &four()[..1]);
     assert_eq!(file[..128], example("header"));
     assert_eq!(unpacked(&file[128..185]), example("root"));
-    assert_eq!(unpacked(&file[185..304]), example("leaf"));
+    assert_eq!(unpacked(&file[185..303]), example("leaf"));
     let raw = Raw::of(&four()[..1], 1);
     assert_eq!(raw.page(1), example("leaf"));
     let kept =

@@ -95,13 +95,14 @@ fn raw() -> Raw {
     Raw::of(&four(), 2)
 }
 
-/// Spectra of one leaf of two, a felt difference and metadata with an unknown key.
+/// Spectra of one leaf of two, two errors and metadata with an unknown key.
 fn described() -> Raw {
     raw().with(|raw| {
         let mut levels = [0; 48];
         levels.iter_mut().enumerate().for_each(|(i, level)| *level = 255 - 5 * i as u8);
         raw.spectra = vec![vec![None, Some((-34.5, levels))]];
         raw.leaves[0][1].felt = 152;
+        raw.leaves[0][1].held_out = 301;
         raw.metadata = br#"{"version":"2","mood":["calm"]}"#.to_vec();
     })
 }
@@ -344,6 +345,7 @@ fn entries() -> Vec<Named> {
         ("library_page_invalid_exponent", changed(|raw| raw.leaves[0][0].law.1[1] = 4.5)),
         ("library_page_invalid_quantity", changed(|raw| raw.leaves[0][0].quantity = 5)),
         ("library_page_invalid_felt", changed(|raw| raw.leaves[0][0].felt = 100_002)),
+        ("library_page_invalid_held_out", changed(|raw| raw.leaves[0][1].held_out = 100_002)),
         (
             "library_page_invalid_licence",
             raw()

@@ -100,6 +100,7 @@ pub fn described(asset: &Asset) -> Description {
         // One texture has no spectrum.
         spectrum: CoarseSpectrum::new(&hertz, &magnitude).filter(|_| asset.manifest.name != "felt"),
         felt_error_rms_db: Some(power).filter(|_| !asset.manifest.tags.is_empty()),
+        held_out_error_db: Some(2.0 * power).filter(|_| asset.manifest.name != "felt"),
     }
 }
 

@@ -56,6 +56,7 @@ pub struct Row {
     pub quantity: u8,
     /// Felt difference, hundredths of a decibel, plus 1; 0 if it is unknown.
     pub felt: u64,
+    pub held_out: u64,
 }
 
 impl Raw {
@@ -87,6 +88,7 @@ impl Raw {
                 author: None,
                 quantity: 0,
                 felt: 0,
+                held_out: 0,
             });
             raw.payload.extend(bytes);
         }
@@ -235,6 +237,7 @@ impl Raw {
         }
         page.extend(rows.iter().map(|row| row.quantity));
         rows.iter().for_each(|row| varint(&mut page, row.felt));
+        rows.iter().for_each(|row| varint(&mut page, row.held_out));
         page
     }
 

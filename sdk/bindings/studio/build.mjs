@@ -11,7 +11,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "vite";
 
-import { cataloguePage, digest, policy, withPolicy } from "./parts.mjs";
+import { base85, cataloguePage, digest, policy, withPolicy } from "./parts.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const out = path.resolve(process.argv[2] ?? path.join(here, "dist"));
@@ -59,7 +59,7 @@ async function buildStatic() {
 
 /** A module as text that runs nothing: compressed, since a page is read as a whole. */
 async function block(name) {
-  const text = await readFile(path.join(here, ".htex", `${name}.gz`), "base64");
+  const text = base85(await readFile(path.join(here, ".htex", `${name}.gz`)));
   return `<script type="application/octet-stream" id="${name}">${text}</script>\n    `;
 }
 

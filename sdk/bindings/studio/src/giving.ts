@@ -3,7 +3,7 @@
 import { computed, signal } from "@preact/signals";
 
 import playerAddress from "virtual:player";
-import { compressedLibrary, plainBase64 } from "./modules.ts";
+import { base64, compressedLibrary } from "./modules.ts";
 import { theAuthor } from "./author.ts";
 import { finish } from "./first-steps.ts";
 import { toLink } from "./link.ts";
@@ -173,7 +173,7 @@ export async function savePlayer() {
     // No text in it can end the script element.
     __OPTIONS__: JSON.stringify(options).replaceAll("<", "\\u003c"),
     __LIBRARY__: library,
-    __TEXTURE__: await plainBase64(document.bytes),
+    __TEXTURE__: base64(document.bytes),
   };
   const page = template.replaceAll(/__(NAME|OPTIONS|LIBRARY|TEXTURE)__/g, (word) => parts[word] ?? "");
   const file = fileName(name, "html");

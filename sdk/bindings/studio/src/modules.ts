@@ -5,7 +5,7 @@ import { setImportLibrary } from "htex/import";
 import { author, importer, library } from "virtual:modules";
 import { authorWorker, guardedWorker, readingWorker } from "virtual:workers";
 
-/** Names of the modules, and of the blocks of the page of one file that have them, compressed and as base64. */
+/** Names of the modules, and of the blocks of the page of one file that have them, compressed and as text (`base85` of `parts.mjs`). */
 const LIBRARY = "htex.wasm";
 const AUTHOR = "htex-author.wasm";
 const IMPORTER = "htex-import.wasm";
@@ -16,8 +16,22 @@ function block(name: string) {
   return document.getElementById(name)?.textContent ?? null;
 }
 
+/** The bytes of a block: five letters are four bytes, highest first; fewer letters at the end are one byte less than letters. */
+function bytesOf(text: string) {
+  const bytes = new Uint8Array(Math.floor((text.length * 4) / 5));
+  for (let from = 0, to = 0; from < text.length; from += 5) {
+    let group = 0;
+    for (let i = from; i < from + 5; i++) {
+      const code = i < text.length ? text.charCodeAt(i) : 119;
+      group = group * 85 + (code === 122 ? 60 : code) - 35;
+    }
+    for (let shift = 24; shift >= 0 && to < bytes.length; shift -= 8) bytes[to++] = group >>> shift;
+  }
+  return bytes;
+}
+
 async function inflated(text: string) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const bytes = bytesOf(text);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -76,20 +90,18 @@ export function startReading() {
   return readingWorker ? new Worker(readingWorker, { type: "module" }) : new Worker(new URL("./reading-worker.ts", import.meta.url), { type: "module" });
 }
 
-async function base64(stream: ReadableStream) {
-  const all = new Uint8Array(await new Response(stream).arrayBuffer());
+export function base64(all: Uint8Array) {
   let text = "";
   for (let at = 0; at < all.length; at += 0x8000) text += String.fromCharCode(...all.subarray(at, at + 0x8000));
   return btoa(text);
 }
 
-/** The player's module as the single-file page stores it. */
+/** The player's module as the page of a player has it: compressed, as base64. */
 export async function compressedLibrary(): Promise<string> {
   const text = block(LIBRARY);
-  if (text !== null) return text;
+  if (text !== null) return base64(bytesOf(text));
   const response = await fetch(absolute(library ?? LIBRARY));
   if (!response.ok || !response.body) throw new Error(`the player's module cannot be read: ${response.status}; reload the page`);
-  return base64(response.body.pipeThrough(new CompressionStream("gzip")));
+  const stream = response.body.pipeThrough(new CompressionStream("gzip"));
+  return base64(new Uint8Array(await new Response(stream).arrayBuffer()));
 }
-
-export const plainBase64 = (bytes: Uint8Array) => base64(new Blob([bytes as Uint8Array<ArrayBuffer>]).stream());

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 use fs_err as fs;
@@ -80,6 +81,9 @@ const WORKER: [&str; 8] = [
 const AUTHOR_WORKER: [&str; 5] =
     ["guests.js", "core.js", "author-core.js", "author-serve.js", "author-worker.js"];
 
+/// The player's module.
+const PLAYER: &str = "htex.wasm";
+
 /// The features of `sdk/bindings/web/author`, and the name of the module built with each.
 const MODULES: [(&str, &str); 3] =
     [("make", "htex-author.wasm"), ("import", "htex-import.wasm"), ("scene", "htex-scene.wasm")];
@@ -90,12 +94,10 @@ const MODULES: [(&str, &str); 3] =
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/bindings/web");
-    let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
+    let modules = modules()?;
     fs::create_dir_all(out)?;
-    // Each feature is built to the same file name, so it is copied before the next one is built.
-    for (feature, name) in MODULES {
-        let built = module("htex-web-author", "author", &["--features", feature])?;
-        fs::copy(built.join("htex_author_c.wasm"), out.join(name))?;
+    for (_, name) in MODULES {
+        fs::copy(modules.join(name), out.join(name))?;
     }
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
@@ -107,10 +109,30 @@ pub fn web(out: &Path) -> Result<()> {
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
         copy(workspace().join(name), name)?;
     }
-    copy(player, "htex.wasm")?;
+    copy(modules.join(PLAYER), PLAYER)?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
     join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
     join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
+}
+
+/// Builds the modules, and returns their folder. The modules of one package are built to the same
+/// file, and replace each other, so a second build would compile them again: each process builds
+/// them once.
+fn modules() -> Result<PathBuf> {
+    static BUILT: Mutex<bool> = Mutex::new(false);
+    let mut is_built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = target().join("web-modules");
+    if !*is_built {
+        fs::create_dir_all(&folder)?;
+        let player = module("htex-capi", "small", &["--features", "library"])?;
+        fs::copy(player.join("htex_c.wasm"), folder.join(PLAYER))?;
+        for (feature, name) in MODULES {
+            let built = module("htex-web-author", "author", &["--features", feature])?;
+            fs::copy(built.join("htex_author_c.wasm"), folder.join(name))?;
+        }
+        *is_built = true;
+    }
+    Ok(folder)
 }
 
 /// Joins files of a folder into one script.

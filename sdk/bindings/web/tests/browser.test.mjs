@@ -8,7 +8,7 @@ import test, { after, before } from "node:test";
 import { start } from "./browser.mjs";
 import { HTEX_FIXTURES, MODELS, difference, samples } from "./fixtures.mjs";
 
-const { HTEX_PICTURE, HTEX_SECONDS = "60" } = process.env;
+const { HTEX_PICTURE, HTEX_SECONDS = "20" } = process.env;
 /** Number of samples of the fade at a start, at 48 kHz. */
 const FADE = 480;
 

@@ -86,6 +86,8 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         synth("vinyl.htex", model)?;
     }
     synth("bursts.htex", "bursts")?;
+    copy(&workspace().join("spec/conformance/valid_fluctuation.htex"), &folder.join("swell.htex"))?;
+    htex(&["synth", "swell.htex", "--fluctuation", "--seconds", SECONDS, "-o", "swell.wav"])?;
     authored(folder, &htex)?;
     exchanged::write(folder, &htex)?;
     read_otherwise(folder, &htex)?;

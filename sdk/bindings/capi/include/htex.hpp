@@ -137,6 +137,7 @@ struct VoiceOptions {
     bool level_scaling = true;
     bool contact = true;
     double ceiling = 0.0;
+    bool fluctuation = false;
 };
 
 /* Level and mean frequency of what a voice played since the last call; see htex_voice_envelope. */
@@ -320,6 +321,7 @@ public:
         c.no_level_scaling = !options.level_scaling;
         c.no_contact = !options.contact;
         c.ceiling = options.ceiling;
+        c.fluctuation = options.fluctuation;
         htex_voice voice{};
         if (Status status = status_of(htex_voice_new(handle_.get(), &c, &voice)); !status)
             return status;

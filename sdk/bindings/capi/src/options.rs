@@ -115,6 +115,9 @@ pub struct htex_voice_options {
     /// Highest level that the voice reaches at motions outside the recorded conditions, as a
     /// multiple of the strongest recorded level. Must be positive and finite; 0 selects 4.
     pub ceiling: f64,
+    /// If not 0, the texture becomes stronger and weaker in time as its recording did, if the asset
+    /// states how much. The mean square of the samples stays the same.
+    pub fluctuation: u32,
 }
 
 /// Reads the first `size` bytes of a struct of options, with zeros for the rest.
@@ -253,6 +256,7 @@ pub(crate) unsafe fn voice_options<'a>(
         no_level_scaling: 0,
         no_contact: 0,
         ceiling: 0.0,
+        fluctuation: 0,
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
@@ -272,7 +276,8 @@ pub(crate) unsafe fn voice_options<'a>(
         .with_motion(motion)
         .with_synthesis(synthesis)
         .with_envelope_bands(options.envelope_bands as usize)
-        .with_effects(effects);
+        .with_effects(effects)
+        .with_fluctuation(options.fluctuation != 0);
     // Only an exact zero selects the default. NaN and negative numbers are passed on, and the
     // library refuses them.
     if options.rate_hz != 0.0 {

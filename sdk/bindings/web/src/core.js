@@ -38,7 +38,7 @@ export class HtexError extends Error {
 
 /** Sizes of the structs htex_open_options, htex_voice_options, htex_bytes and htex_envelope. */
 const OPEN_OPTIONS = 36;
-const VOICE_OPTIONS = 72;
+const VOICE_OPTIONS = 80;
 const BYTES = 8;
 const ENVELOPE = 32;
 /** Largest number of bands in an envelope. */
@@ -226,7 +226,7 @@ export class Core {
 
   /** Writes the options of a voice; see `VoiceOptions` in index.d.ts. */
   putVoiceOptions(take, options) {
-    const { model, rate = 20_000, seed = 0, motion, synthesis, ceiling = 0 } = options;
+    const { model, rate = 20_000, seed = 0, motion, synthesis, ceiling = 0, fluctuation = false } = options;
     const { frequencyScaling = true, levelScaling = true, contact = true, gain = 0, limit = 0, bands = 0 } = options;
     const texts = [this.putText(take, model), this.putMotion(take, motion), this.putText(take, synthesis)];
     const at = take(VOICE_OPTIONS);
@@ -245,6 +245,7 @@ export class Core {
     view.setUint32(at + 56, levelScaling ? 0 : 1, true);
     view.setUint32(at + 60, contact ? 0 : 1, true);
     view.setFloat64(at + 64, ceiling, true);
+    view.setUint32(at + 72, fluctuation ? 1 : 0, true);
     return at;
   }
 

@@ -96,6 +96,11 @@ export interface VoiceOptions {
    */
   ceiling?: number;
   /**
+   * Whether the texture becomes stronger and weaker in time as its recording did, if it states how
+   * much. Default false.
+   */
+  fluctuation?: boolean;
+  /**
    * Gain of the samples. Default 1. An `HtexNode` does not use this option: its `gain` is an
    * AudioParam.
    */
@@ -342,6 +347,8 @@ export interface LibraryEntry {
   quantity?: Quantity;
   /** Felt difference from the recordings, RMS over third octaves, dB; absent if it is not known. */
   felt_error_rms_db?: number;
+  /** Held-out error, RMS over third octaves, dB; absent if the texture does not state it. */
+  held_out_error_db?: number;
   /** Size of the texture's file, bytes. */
   bytes: number;
   /** BLAKE3 hash of the texture's file, hexadecimal. */
@@ -377,6 +384,8 @@ export interface LibraryQuery {
   quantity?: Quantity;
   /** Largest felt difference from the recordings, dB. */
   felt?: number;
+  /** Largest held-out error, dB. */
+  held_out?: number;
 }
 
 /**

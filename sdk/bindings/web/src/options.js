@@ -16,6 +16,7 @@ export const VOICE = {
   levelScaling: "boolean",
   contact: "boolean",
   ceiling: "number",
+  fluctuation: "boolean",
   gain: "number",
   limit: "number",
   bands: "number",

@@ -33,6 +33,14 @@ for (const model of MODELS) {
   });
 }
 
+test("a texture that becomes stronger and weaker has the samples of the command, and by default it does not", async () => {
+  const texture = await open(await bytes("swell.htex"));
+  const expected = await samples("swell.wav");
+  const rendered = (options) => texture.voice(options).render(expected.length);
+  assert.equal(difference(rendered({ fluctuation: true }), expected), -1);
+  assert.notEqual(difference(rendered({}), expected), -1);
+});
+
 test("a model that an asset brings along has the samples of the engine", async () => {
   const options = { model: "bursts", rate: 48000, seed: 7, motion: MOTION };
   const texture = await open(await bytes("bursts.htex"));

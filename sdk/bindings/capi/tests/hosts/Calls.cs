@@ -22,7 +22,7 @@ static class Calls
         var open = new OpenOptions { Engine = Engine.Checked };
         using (var library = Library.FromBytes(File.ReadAllBytes(paths[1])))
         using (var asset = Asset.FromBytes(File.ReadAllBytes(paths[0]), open))
-        using (var voice = asset.Voice(new VoiceOptions { Seed = 7, Gain = 0.5, Limit = 0.01, EnvelopeBands = 3 }))
+        using (var voice = asset.Voice(new VoiceOptions { Seed = 7, Gain = 0.5, Limit = 0.01, EnvelopeBands = 3, Fluctuation = true }))
         {
             Print("library", library.Count);
             Console.WriteLine("name " + asset.Name);
@@ -186,7 +186,7 @@ static class Memory
 {
     internal static bool Is(Asset asset, float[] samples, double[] bands, Envelope wanted)
     {
-        using (var voice = asset.Voice(new VoiceOptions { Seed = 7, Gain = 0.5, Limit = 0.01, EnvelopeBands = 3 }))
+        using (var voice = asset.Voice(new VoiceOptions { Seed = 7, Gain = 0.5, Limit = 0.01, EnvelopeBands = 3, Fluctuation = true }))
         using (var native = new NativeArray<float>(1000))
         {
             var there = new float[4000];

@@ -59,6 +59,7 @@ int main(int argc, char **argv)
     options.gain = 0.5;
     options.limit = 0.01;
     options.envelope_bands = 3;
+    options.fluctuation = true;
     auto voice = texture->voice(options);
     std::printf("model %s\n", voice->model()->c_str());
     std::vector<float> samples(4000), sum(4000);

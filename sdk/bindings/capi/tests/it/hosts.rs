@@ -149,11 +149,19 @@ fn calls_of_each_language_tell_the_same() {
     let mut writer = htex::library::Writer::create(&library, "A").unwrap();
     writer.add("a", &fs::read(asset()).unwrap()).unwrap();
     writer.finish().unwrap();
+    let fluctuating = folder.path().join("fluctuating.htex");
+    let mut data = htex::format::Asset::open(&asset()).unwrap();
+    data.manifest.fluctuation = htex::format::Fluctuation::from_db([4.0, 2.0]);
+    fs::write(&fluctuating, data.to_bytes().unwrap()).unwrap();
     let scene = asset().with_file_name("constant.scene.json");
 
-    let opened = Texture::open(asset()).unwrap();
-    let options =
-        VoiceOptions::default().with_seed(7).with_gain(0.5).with_limit(0.01).with_envelope_bands(3);
+    let opened = Texture::open(&fluctuating).unwrap();
+    let options = VoiceOptions::default()
+        .with_seed(7)
+        .with_gain(0.5)
+        .with_limit(0.01)
+        .with_envelope_bands(3)
+        .with_fluctuation(true);
     let mut voice = opened.voice(&options).unwrap();
     let (mut samples, mut bands) = ([0.0f32; 4_000], [0.0; 3]);
     voice.render(&mut samples).unwrap();
@@ -187,9 +195,8 @@ fn calls_of_each_language_tell_the_same() {
             _ => &[],
         };
         let program = project.build_with(&source, more);
-        let asset = asset();
         let channels = folder.path().join(format!("{file}.wav"));
-        let mut paths: Vec<&OsStr> = vec![asset.as_os_str(), library.as_os_str()];
+        let mut paths: Vec<&OsStr> = vec![fluctuating.as_os_str(), library.as_os_str()];
         if language == Language::Csharp {
             paths.push(scene.as_os_str());
         }

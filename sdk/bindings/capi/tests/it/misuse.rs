@@ -194,6 +194,7 @@ fn options_are_checked_by_their_size() {
         no_level_scaling: 0,
         no_contact: 0,
         ceiling: 0.0,
+        fluctuation: 0,
     };
     let mut new = |options: &htex_voice_options| {
         // SAFETY: live pointers.

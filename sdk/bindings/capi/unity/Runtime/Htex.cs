@@ -190,6 +190,11 @@ namespace Htex
         /// multiple of the strongest recorded level; 0 selects 4.
         /// </summary>
         public double Ceiling;
+        /// <summary>
+        /// Whether the texture becomes stronger and weaker in time as its recording did, if the
+        /// asset states how much.
+        /// </summary>
+        public bool Fluctuation;
     }
 
     /// <summary>Options for opening an asset or a scene; see htex_open_options.</summary>
@@ -515,6 +520,7 @@ namespace Htex
                     NoLevelScaling = options.LevelScaling ? 0u : 1u,
                     NoContact = options.Contact ? 0u : 1u,
                     Ceiling = options.Ceiling,
+                    Fluctuation = options.Fluctuation ? 1u : 0u,
                 };
                 Native.Handle voice;
                 Native.Check(Native.htex_voice_new(asset, ref c, out voice));
@@ -1262,6 +1268,7 @@ namespace Htex
             internal uint EnvelopeBands;
             internal uint NoFrequencyScaling, NoLevelScaling, NoContact;
             internal double Ceiling;
+            internal uint Fluctuation;
         }
 
         [StructLayout(LayoutKind.Sequential)]

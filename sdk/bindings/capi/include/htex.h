@@ -530,6 +530,11 @@ typedef struct htex_voice_options {
      multiple of the strongest recorded level. Must be positive and finite; 0 selects 4.
      */
     double ceiling;
+    /*
+     If not 0, the texture becomes stronger and weaker in time as its recording did, if the asset
+     states how much. The mean square of the samples stays the same.
+     */
+    uint32_t fluctuation;
 } htex_voice_options;
 
 /*

@@ -154,6 +154,14 @@ def test_columns_of_frames_are_known_by_their_names(place: pathlib.Path) -> None
         found = htex.process(recording)
         assert np.array_equal(found.spectrum.magnitude, expected.spectrum.magnitude)
         assert (found.rate_hz, found.condition) == (expected.rate_hz, expected.condition)
+    # Times in the index, and names that CSV would have to quote.
+    timed = frame.drop(columns="time_s").set_index(pd.to_timedelta(frame["time_s"], unit="s"))
+    found = htex.process(timed.rename_axis(None).assign(**{"it's, a µ": 0.0}))
+    np.testing.assert_allclose(found.spectrum.magnitude, expected.spectrum.magnitude, rtol=1e-9)
+    with pytest.raises(htex.OptionError, match="double quote"):
+        htex.process(frame.assign(**{'a"b': 0.0}))
+    with pytest.raises(htex.OptionError, match="2 to 3 numbers"):
+        htex.process({"time_s": [0.0, 1.0], "fx_n": [1.0, 2.0, 3.0]})
     unnamed = pd.DataFrame(frame[["fx_n", "fy_n"]].to_numpy())
     as_array = htex.process(unnamed.to_numpy(), rate_hz=20_000)
     assert np.array_equal(htex.process(unnamed, rate_hz=20_000).spectrum.magnitude, as_array.spectrum.magnitude)

@@ -12,7 +12,7 @@ const MAX_BYTES: u64 = 4 << 30;
 
 /// Number of bytes that are read to detect the kind of file. An HDF5 signature is at most this far
 /// from the start.
-const FRONT: usize = 4096;
+const FRONT: usize = 16 << 10;
 
 /// A file, or bytes in memory.
 enum Input<'a> {

@@ -1,4 +1,4 @@
-"""Convert recordings to files: an array to an NPY file, and a data frame to a CSV file.
+"""Convert recordings to files: an array to an NPY file of numbers, and a data frame to one of records.
 
 So arrays and data frames have the same channels, scale and limits as these files.
 """
@@ -45,7 +45,7 @@ def source(recording: Any) -> Any:
         return (os.path.basename(name) if isinstance(name, str) else "recording", content)
     named = _columns(recording)
     if named is not None:
-        return ("frame", _csv(named))
+        return ("frame", _records(named))
     array = _unmasked("the array", recording)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"expected a path, bytes, a binary file or an array of numbers, got {array.dtype}")
@@ -58,14 +58,18 @@ def source(recording: Any) -> Any:
 
 def _columns(recording: Any) -> dict[str, Any] | None:
     """Return the columns of a data frame or a mapping by name, or ``None`` for objects without
-    column names.
+    column names. An index of times is a column of seconds.
     """
     if not (isinstance(recording, Mapping) or hasattr(recording, "columns")):
         return None
     names = list(getattr(recording, "columns", recording))
     if not names or not all(isinstance(name, str) for name in names):
         return None
-    return {name: _unmasked(f"column {name!r}", recording[name]) for name in names}
+    columns = {name: _unmasked(f"column {name!r}", recording[name]) for name in names}
+    index = np.asarray(getattr(recording, "index", ()))
+    if index.dtype.kind not in "mM" or index.size == 0 or any(name.lower().startswith("time") for name in names):
+        return columns
+    return {"time_s": (index - index[0]) / np.timedelta64(1, "ns") * 1e-9, **columns}
 
 
 def _unmasked(what: str, values: Any) -> Any:
@@ -76,17 +80,24 @@ def _unmasked(what: str, values: Any) -> Any:
     return np.asarray(values)
 
 
-def _csv(columns: Mapping[str, Any]) -> bytes:
-    """Return columns as a CSV file. It has all digits of the numbers, and the column names as they
-    are."""
+def _records(columns: Mapping[str, Any]) -> bytes:
+    """Return columns as an NPY file of records. It has all digits of the numbers, and the column
+    names as they are."""
     for name, values in columns.items():
         if values.ndim != 1 or values.dtype.kind not in "biuf":
             raise TypeError(f"column {name!r} is of {values.dtype} in {values.ndim} dimensions; give numbers, one for each sample")
-        if any(c in name for c in ',"\r\n'):
-            raise _errors.OptionError(f"column {name!r}: a name has no comma, quote or line end; rename it")
-    rows = zip(*(values.astype(np.float64).tolist() for values in columns.values()), strict=True)
-    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
-    return ("\n".join(lines) + "\n").encode()
+        if not name or not name.isprintable() or any(c in name for c in "\"\\"):
+            raise _errors.OptionError(f"column {name!r}: a name is not empty, and has no double quote, backslash or line end; rename it")
+    lengths = {len(values) for values in columns.values()}
+    if len(lengths) > 1:
+        raise _errors.OptionError(f"the columns have {min(lengths)} to {max(lengths)} numbers; give equally many")
+    records = np.empty(lengths.pop(), dtype=[(name, "<f8") for name in columns])
+    for name, values in columns.items():
+        records[name] = values
+    file = io.BytesIO()
+    # Names in UTF-8.
+    np.lib.format.write_array(file, records, version=(3, 0), allow_pickle=False)
+    return file.getvalue()
 
 
 def stem(source: Any) -> str:

@@ -10,6 +10,7 @@ use claxon::{Block, FlacReader, FlacReaderOptions};
 use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::InputFile;
+use crate::sheet::Layout;
 use crate::value_limit::ValueLimit;
 
 /// Opens a FLAC file. Its blocks are decoded one by one later.
@@ -26,7 +27,7 @@ pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'
     Ok(Samples {
         columns: channel_names(width),
         rate_hz: Some(f64::from(info.sample_rate)),
-        are_integers: true,
+        layout: Layout::Channels { are_integers: true },
         frames: info.samples,
         limit,
         order: Order::Interleaved,

@@ -1,18 +1,25 @@
-//! The header of an NPY file: `{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 3), }`.
+//! The header of an NPY file: `{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 3), }`, or
+//! of records `{'descr': [('time_s', '<f8'), ('fx_n', '<f4')], …}`.
+
+use std::borrow::Cow;
 
 use crate::error::ReadProblem;
 use crate::formats::bytes::{Endian, NumberType};
 
-/// Longest header that is read, bytes; NumPy writes 118 bytes for such arrays.
-const MAX_HEADER: usize = 4096;
+/// Longest header that is read, bytes; NumPy writes 118 bytes for plain arrays.
+const MAX_HEADER: usize = 16 << 10;
+/// What can be read instead of other records.
+const PLAIN: &str = "save fields of the types f4, f8, i2 or i4, or a plain float array";
 
 /// What an NPY header states.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Header {
     /// Number of bytes before the values.
     pub(crate) bytes: usize,
-    pub(crate) kind: NumberType,
-    pub(crate) endian: Endian,
+    /// Types of the fields of a record, in their order; of a plain array, the type of its values.
+    pub(crate) types: Vec<(NumberType, Endian)>,
+    /// Names of the fields of a record; `None` for a plain array.
+    pub(crate) names: Option<Vec<String>>,
     /// Whether the values of a column are next to each other.
     pub(crate) is_planar: bool,
     pub(crate) shape: Vec<u64>,
@@ -21,25 +28,28 @@ pub(crate) struct Header {
 impl Header {
     /// Parses the header from the first bytes of a file, which must contain all of it.
     pub(crate) fn parse(front: &[u8]) -> Result<Self, ReadProblem> {
-        let (start, text) = text(front)?;
-        let (kind, endian) = kind(value(text, "descr")?)?;
-        let is_planar = match value(text, "fortran_order")? {
+        let (bytes, text) = text(front)?;
+        let described = value(&text, "descr")?;
+        // A field may have the name of another key, so these are looked for behind the fields.
+        let (types, names, rest) = match described.strip_prefix('[') {
+            Some(fields) => {
+                let (fields, rest) = records(fields)?;
+                let (names, types) = fields.into_iter().unzip();
+                (types, Some(names), rest)
+            }
+            None => (vec![kind(described)?], None, &text[..]),
+        };
+        let is_planar = match value(rest, "fortran_order")? {
             order if order.starts_with("True") => true,
             order if order.starts_with("False") => false,
             _ => return Err(lacks("fortran_order of True or False")),
         };
-        Ok(Self {
-            bytes: start + text.len(),
-            kind,
-            endian,
-            is_planar,
-            shape: shape(value(text, "shape")?)?,
-        })
+        Ok(Self { bytes, types, names, is_planar, shape: shape(value(rest, "shape")?)? })
     }
 }
 
-/// Returns the header's dictionary, and the byte at which the dictionary begins.
-fn text(front: &[u8]) -> Result<(usize, &str), ReadProblem> {
+/// Returns the number of bytes before the values, and the header's dictionary.
+fn text(front: &[u8]) -> Result<(usize, Cow<'_, str>), ReadProblem> {
     let (start, length) = match front {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
         [_, _, _, _, _, _, 2 | 3, _, a, b, c, d, ..] => {
@@ -62,8 +72,13 @@ fn text(front: &[u8]) -> Result<(usize, &str), ReadProblem> {
             "the file ends at byte {end}, inside its header; copy it again"
         ))
     })?;
-    let text = std::str::from_utf8(header).map_err(|_| lacks("text"))?;
-    Ok((start, text))
+    // Latin-1 up to version 2.
+    let text = if front.get(6).is_some_and(|version| *version < 3) && !header.is_ascii() {
+        Cow::Owned(header.iter().copied().map(char::from).collect())
+    } else {
+        Cow::Borrowed(std::str::from_utf8(header).map_err(|_| lacks("text"))?)
+    };
+    Ok((start + length, text))
 }
 
 /// Returns the dictionary's text from a key's value to the end.
@@ -79,10 +94,38 @@ fn lacks(what: &str) -> ReadProblem {
     ReadProblem::Invalid(format!("not an NPY file that can be read: its header has no {what}"))
 }
 
-fn kind(descr: &str) -> Result<(NumberType, Endian), ReadProblem> {
-    if descr.starts_with('[') {
-        return Err(ReadProblem::invalid("the array holds records; save a plain float array"));
+/// The name and the type of a field of a record.
+type Field = (String, (NumberType, Endian));
+
+/// Parses the fields of a record, after the `[` of their list. Returns them, and the text after
+/// their list.
+fn records(mut rest: &str) -> Result<(Vec<Field>, &str), ReadProblem> {
+    let other = || ReadProblem::Invalid(format!("the array holds other records; {PLAIN}"));
+    let mut fields = Vec::new();
+    loop {
+        rest = rest.trim_start_matches([' ', ',']);
+        if let Some(rest) = rest.strip_prefix(']') {
+            return if fields.is_empty() { Err(other()) } else { Ok((fields, rest)) };
+        }
+        let field = rest.strip_prefix('(').ok_or_else(other)?;
+        let (name, field) = quoted(field).ok_or_else(other)?;
+        let descr = field.trim_start_matches([' ', ',']);
+        let (_, field) = quoted(descr).ok_or_else(other)?;
+        // Another element is the shape of an array in the field.
+        let field = field.trim_start_matches([' ', ',']).strip_prefix(')').ok_or_else(other)?;
+        fields.push((name.to_owned(), kind(descr)?));
+        rest = field;
     }
+}
+
+/// Splits a quoted text without escapes from what follows.
+fn quoted(text: &str) -> Option<(&str, &str)> {
+    let quote = text.chars().next().filter(|quote| matches!(quote, '\'' | '"'))?;
+    let (inside, rest) = text[1..].split_once(quote)?;
+    (!inside.contains('\\')).then_some((inside, rest))
+}
+
+fn kind(descr: &str) -> Result<(NumberType, Endian), ReadProblem> {
     let mut parts = descr.split(['\'', '"']);
     let (Some(""), Some(name)) = (parts.next(), parts.next()) else {
         return Err(lacks("type of numbers"));

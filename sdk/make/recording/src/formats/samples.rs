@@ -1,4 +1,4 @@
-//! Files with channels of samples: WAV, FLAC and NPY.
+//! Files whose samples stand in a fixed order: WAV, FLAC and NPY.
 
 use crate::error::Fault;
 use crate::sheet::{Columns, Layout, Numbers, Sheet};
@@ -9,8 +9,7 @@ pub(crate) struct Samples<'a> {
     pub(crate) columns: Columns,
     /// The file's own sample rate, hertz.
     pub(crate) rate_hz: Option<f64>,
-    /// Whether the samples are integers; these are read as fractions of full scale.
-    pub(crate) are_integers: bool,
+    pub(crate) layout: Layout,
     /// Number of samples in a channel according to the header, if it states one.
     pub(crate) frames: Option<u64>,
     pub(crate) limit: ValueLimit,
@@ -69,7 +68,7 @@ impl Sheet for Samples<'_> {
     }
 
     fn layout(&self) -> Layout {
-        Layout::Channels { are_integers: self.are_integers }
+        self.layout
     }
 
     fn rate_hz(&self, _: &[usize]) -> Result<Option<f64>, Fault> {

@@ -7,6 +7,7 @@ use hound::{SampleFormat, WavReader};
 use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::InputFile;
+use crate::sheet::Layout;
 use crate::value_limit::ValueLimit;
 
 /// Opens a WAV file. Its samples are read one by one later.
@@ -33,7 +34,7 @@ pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'
     Ok(Samples {
         columns,
         rate_hz: Some(f64::from(spec.sample_rate)),
-        are_integers,
+        layout: Layout::Channels { are_integers },
         frames: Some(frames.into()),
         limit,
         order: Order::Interleaved,

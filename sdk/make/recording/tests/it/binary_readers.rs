@@ -39,6 +39,46 @@ fn wav_of_one_to_three_channels_and_all_depths() {
     }
 }
 
+/// Records are read as the columns of a table: by their names, with integers as they are.
+#[test]
+fn npy_of_records_is_a_table() {
+    let rows = [(0.0_f64, 1_i16, 0.5_f32), (0.1, -2, 0.25), (0.2, 3, -0.5)];
+    let header = |fields: &str| {
+        format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': (3,), }}\n")
+    };
+    let fields = "('time_s', '<f8'), ('shape', '>i2'), (\"fx_n\", '<f4')";
+    let data: Vec<u8> = rows
+        .iter()
+        .flat_map(|(t, i, x)| [&t.to_le_bytes()[..], &i.to_be_bytes(), &x.to_le_bytes()].concat())
+        .collect();
+    let text = "time_s,shape,fx_n\n0,1,0.5\n0.1,-2,0.25\n0.2,3,-0.5\n";
+    let options = ReadOptions::default();
+    let [records, table] = [("r.npy", npy(&header(fields), &data)), ("r.csv", text.into())]
+        .map(|(name, bytes)| read(name, &bytes, &options).unwrap());
+    assert_eq!((&records.axes, records.rate_hz), (&table.axes, table.rate_hz));
+    assert_eq!(records.axes, [[0.5, 0.25, -0.5]]);
+    // Names are Latin-1 up to version 2.
+    let mut latin = npy(&header("('time_s', '<f8'), ('\u{b5}', '>i2'), ('fx_n', '<f4')"), &data);
+    let at = latin.windows(2).position(|two| two == "\u{b5}".as_bytes()).unwrap();
+    latin.remove(at);
+    latin[8] -= 1;
+    assert_eq!(read("r.npy", &latin, &options).unwrap().axes, records.axes);
+    let many = "('a', '<f4'), ".repeat(257);
+    for (fields, words) in [
+        ("('time_s', '<f8'), ('fx_n', '<f4', (3,))", "holds other records; save fields"),
+        ("('time_s', '<f8'), ('fx_n', '<c8')", "f4, f8, i2 or i4"),
+        ("(('title', 'time_s'), '<f8')", "holds other records"),
+        ("('a\\'b', '<f8')", "holds other records"),
+        ("('a', '<f8'", "holds other records"),
+        ("'a'", "holds other records"),
+        ("", "holds other records"),
+        (&many, "expected (n,)"),
+    ] {
+        let error = read("r.npy", &npy(&header(fields), &data), &options).unwrap_err();
+        assert!(error.contains(words), "{fields}: {error}");
+    }
+}
+
 #[test]
 fn npy_in_either_order_and_endianness() {
     let rows = [0.5_f32, 0.25, -0.5, -0.25];

@@ -31,8 +31,9 @@ def process(recording: Recording, **settings: Unpack[Reading]) -> Processed:
     a file, or an array. An array has one row per sample and needs ``rate_hz``. One column is the
     lateral force. Two columns are the x and y components of the lateral force. A third column is
     the normal force. A data frame or a mapping may also be given; its columns are recognised by
-    name, as in a CSV file, and an index of times is the time. For a recording from ``htex record`` or a study, the JSON file next to
-    it specifies how the recording is read. You may also pass this JSON file itself.
+    name, as in a CSV file, and an index of times is the time. For a recording from ``htex record``
+    or a study, the JSON file next to it specifies how the recording is read. You may also pass this
+    JSON file itself.
     """
     with _reading("process", settings) as (reading, _):
         found = _htex.process(source(recording), reading)

@@ -78,6 +78,28 @@ fn the_text_has_every_field_and_its_range() {
     }
 }
 
+/// The registry has exactly the built-in models, each with its major version.
+#[test]
+fn the_registry_has_every_model() {
+    let text = fs::read_to_string(workspace().join("spec/registration.md")).unwrap();
+    let (_, rest) = text.split_once("**Models**").unwrap();
+    let (table, _) = rest.split_once("**Quantities**").unwrap();
+    let rows: Vec<String> = table
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .map(|line| line.split('|').take(3).collect::<Vec<_>>().join("|"))
+        .collect();
+    let registry = Registry::builtin();
+    let row = |model: &htex_host::LoadedModel| {
+        let descriptor = model.descriptor();
+        let major = descriptor.version.split('.').next().unwrap_or_default();
+        format!("| `{}` | {major} ", descriptor.id)
+    };
+    let mut expected: Vec<String> = registry.models().iter().map(row).collect();
+    expected.sort();
+    assert_eq!(rows, expected);
+}
+
 /// A number with commas between thousands.
 fn grouped(x: f64) -> String {
     if x.abs() < 1000.0 {

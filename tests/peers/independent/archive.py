@@ -1,4 +1,4 @@
-"""The container (htex-1.md section 1, and "The archive" of section 12)."""
+"""The container (htex-1.md section 1, htex-reports-1.md section 3)."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def name_is_safe(name: str) -> bool:
 
 
 def check_record(entry: Entry, names: set[str], limits: dict[str, int], findings: Findings) -> None:
-    """The checks of a directory record, in the order of section 12."""
+    """The checks of a directory record, in the order of htex-reports-1.md section 3."""
     if not name_is_safe(entry.name):
         findings.add("ENTRY_NAME_UNSAFE", "", entry.name)
     if entry.name.lower() in names:

@@ -1,4 +1,4 @@
-"""Positions of motions on the axes of speed and force (htex-1.md section 11, *Between conditions*, 1)."""
+"""Positions of motions on the axes of speed and force (htex-playing-1.md section 4, 1)."""
 
 from __future__ import annotations
 

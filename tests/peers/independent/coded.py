@@ -1,4 +1,4 @@
-"""Coded fields (htex-1.md section 4)."""
+"""Coded fields (htex-coded-1.md section 2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Findings and reports (htex-1.md, section 12)."""
+"""Findings and reports (htex-reports-1.md)."""
 
 from __future__ import annotations
 

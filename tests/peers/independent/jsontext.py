@@ -1,4 +1,4 @@
-"""JSON as htex reads it (htex-1.md sections 2 and 12): strict, with duplicate keys refused.
+"""JSON as htex reads it (htex-1.md section 2, htex-reports-1.md section 4): strict, with duplicate keys refused.
 
 The result has dict, list, str, float, bool and None. Every number is a float (binary64), and a `Whole` if it is of
 digits alone and binary64 does not have it. The first error in the order of the text is raised as `Refused` with the
@@ -58,7 +58,7 @@ def depth_of(data: bytes) -> int:
 
 
 class Whole(float):
-    """A number of digits alone that binary64 does not have; `written` is what was written (section 2)."""
+    """A number of digits alone that binary64 does not have; `written` is what was written (htex-1.md section 2)."""
 
     def __new__(cls, written: int):
         number = super().__new__(cls, written)

@@ -1,4 +1,4 @@
-"""The law of motions outside the conditions (htex-1.md sections 2 and 11)."""
+"""The law of motions outside the conditions (htex-playing-1.md section 5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The manifest as JSON: its types, its version and its quantity (htex-1.md sections 2, 3, 7 and 12)."""
+"""The manifest as JSON: its types, its version and its quantity (htex-1.md sections 2, 3 and 7, htex-reports-1.md section 4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The triangles over the positions of conditions (htex-1.md section 11, *Between conditions*, 2 to 4).
+"""The triangles over the positions of conditions (htex-playing-1.md section 4, 2 to 4).
 
 Predicates are exact: positions are binary64 and are taken as fractions.
 """

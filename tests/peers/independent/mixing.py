@@ -1,4 +1,4 @@
-"""Mixing of parameters (htex-1.md section 11, *Mixing*)."""
+"""Mixing of parameters (htex-playing-1.md section 6)."""
 
 from __future__ import annotations
 

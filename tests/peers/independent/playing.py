@@ -1,4 +1,4 @@
-"""A player's numbers at a motion (htex-1.md section 11)."""
+"""A player's numbers at a motion (htex-playing-1.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Magnitudes of the models of the specification (htex-1.md section 6)."""
+"""Magnitudes of the models of the specification (htex-playing-1.md section 2)."""
 
 from __future__ import annotations
 

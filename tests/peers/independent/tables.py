@@ -1,4 +1,4 @@
-"""Tables of coded assets (htex-1.md section 8)."""
+"""Tables of coded assets (htex-coded-1.md section 1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The types of keys, and the check of a document against them (htex-1.md sections 2 and 12).
+"""The types of keys, and the check of a document against them (htex-1.md section 2, htex-reports-1.md section 4).
 
 Types are checked depth first, keys in ascending order of their bytes, and absent keys after those that
 are there. The first error is raised. Unknown keys are collected by `unknown_keys`.
@@ -153,5 +153,5 @@ def unknown_keys(kind: Any, value) -> list[str]:
 
 
 def is_blank(text: str) -> bool:
-    """Whether all characters are Unicode's White_Space (the table of section 2)."""
+    """Whether all characters are Unicode's White_Space (htex-1.md section 2)."""
     return not text.strip(WHITE_SPACE)

@@ -57,7 +57,7 @@ fn near(a: &Value, b: &Value) -> bool {
 /// The table of ranges in the text matches the descriptors.
 #[test]
 fn the_text_has_every_field_and_its_range() {
-    let text = fs::read_to_string(workspace().join("spec/htex-1.md")).unwrap();
+    let text = fs::read_to_string(workspace().join("spec/htex-playing-1.md")).unwrap();
     let rows: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
     for model in htex_host::Registry::builtin().models() {
         assert!(text.contains(&format!("| `{}` |", model.id())));
@@ -76,6 +76,28 @@ fn the_text_has_every_field_and_its_range() {
             }
         }
     }
+}
+
+/// The registry has exactly the built-in models, each with its major version.
+#[test]
+fn the_registry_has_every_model() {
+    let text = fs::read_to_string(workspace().join("spec/registration.md")).unwrap();
+    let (_, rest) = text.split_once("**Models**").unwrap();
+    let (table, _) = rest.split_once("**Quantities**").unwrap();
+    let rows: Vec<String> = table
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .map(|line| line.split('|').take(3).collect::<Vec<_>>().join("|"))
+        .collect();
+    let registry = Registry::builtin();
+    let row = |model: &htex_host::LoadedModel| {
+        let descriptor = model.descriptor();
+        let major = descriptor.version.split('.').next().unwrap_or_default();
+        format!("| `{}` | {major} ", descriptor.id)
+    };
+    let mut expected: Vec<String> = registry.models().iter().map(row).collect();
+    expected.sort();
+    assert_eq!(rows, expected);
 }
 
 /// A number with commas between thousands.

@@ -301,7 +301,9 @@ mod tests {
         let bytes = [0xFF, 0xFF, 0xFB, 0x76, 0x57, 0x42, 0xB5];
         assert_eq!(encode(&[true], &conditions), bytes);
         assert_eq!(decoded(&[true], 2, &bytes).unwrap(), conditions);
-        assert!(include_str!("../../../../spec/htex-1.md").contains("`FF FF FB 76 57 42 B5`"));
+        assert!(
+            include_str!("../../../../spec/htex-coded-1.md").contains("`FF FF FB 76 57 42 B5`")
+        );
         // Nothing is no bytes, and a step can have any size.
         assert_eq!(encode(&[], &[vec![], vec![]]), [0u8; 0]);
         let jumps =

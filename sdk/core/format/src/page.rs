@@ -1,6 +1,6 @@
 //! Generator of `spec/validation.md` and of the schemas of `spec/schemas` that this crate defines.
 
-use htex_base::finding::{FileReport, rules_page};
+use htex_base::finding::{FileReport, colophon, rules_page};
 use serde_json::Value;
 
 use crate::{Appearance, Manifest, RULES, STAGES, rules_of};
@@ -8,12 +8,9 @@ use crate::{Appearance, Manifest, RULES, STAGES, rules_of};
 const HEAD: &str = "\
 # Findings of validation
 
-Generated from the table of rules in `sdk/core/format/src/rules.rs` by
-`cargo xtask generate`.
-
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
 and a message. An asset is valid when no finding is an error. The meaning of a code never changes.
-Section 12 of [htex-1.md](htex-1.md) specifies reports.
+[htex-reports-1.md](htex-reports-1.md) specifies reports.
 
 ## Stages
 
@@ -31,7 +28,7 @@ pub fn validation_page() -> String {
         head += &format!("| {} | {} | {ends} |\n", stage.of, codes.join(", "));
     }
     head += "\n## Codes\n";
-    rules_page(&head, RULES)
+    rules_page(&head, RULES) + &colophon("sdk/core/format/src/rules.rs")
 }
 
 /// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.

@@ -1,12 +1,9 @@
 //! All rules for studies, in one table.
 
-use htex_base::finding::rules_page;
+use htex_base::finding::{colophon, rules_page};
 
 const HEAD: &str = "\
 # Findings in studies
-
-Generated from the table of rules in `sdk/lab/src/study/rules.rs` by
-`cargo xtask generate`.
 
 A finding has a code, a severity, a JSON pointer into the study (`/textures/0/asset`; empty for the file as a whole) and a
 message. A study can be run when no finding is an error. Motions, devices and assets follow the rules of scenes as well, with
@@ -15,7 +12,7 @@ their codes. Codes never change their meaning.
 
 /// Generates the page with all rules: `spec/study-findings.md`.
 pub fn findings_page() -> String {
-    rules_page(HEAD, RULES)
+    rules_page(HEAD, RULES) + &colophon("sdk/lab/src/study/rules.rs")
 }
 
 htex_base::finding::rule_table! {

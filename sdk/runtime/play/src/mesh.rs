@@ -88,8 +88,8 @@ impl Weights {
     }
 }
 
-/// A triangulation of recorded conditions, which gives the weights for any motion. Section 11 of
-/// the format's specification states the rules of the triangulation.
+/// A triangulation of recorded conditions, which gives the weights for any motion. Section 4 of
+/// `spec/htex-playing-1.md` states the rules of the triangulation.
 ///
 /// ```
 /// use htex_play::Mesh;

@@ -1,15 +1,12 @@
 //! Generates `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
 
-use htex_base::finding::rules_page;
+use htex_base::finding::{colophon, rules_page};
 use serde_json::Value;
 
 use crate::{RULES, SceneFile};
 
 const HEAD: &str = "\
 # Findings in scenes
-
-Generated from the table of rules in `sdk/runtime/scene/src/rules.rs` by
-`cargo xtask generate`.
 
 A finding has a code, a severity, a JSON pointer into the scene (empty for the file as a whole) and a
 message. A scene can be played when no finding is an error. Codes never change their meaning.
@@ -41,7 +38,7 @@ A player has other reasons to refuse a scene, which it finds as it plans (sectio
 
 /// Returns the page with all rules: `spec/scene-findings.md`.
 pub fn findings_page() -> String {
-    rules_page(HEAD, RULES)
+    rules_page(HEAD, RULES) + &colophon("sdk/runtime/scene/src/rules.rs")
 }
 
 /// Returns the JSON Schema of version 1.0 scenes: `spec/schemas/scene-1.json`.

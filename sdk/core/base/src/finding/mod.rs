@@ -30,7 +30,7 @@ pub use crate::rule_table;
 pub use cell::as_text;
 pub use entry::{Finding, Severity, listed, summary};
 pub use hint::{Hint, Notice};
-pub use page::rules_page;
+pub use page::{colophon, rules_page};
 pub use plain::{plain, steers};
 pub use pointer::{Place, escape};
 pub use report::{FileReport, Findings, Report};

@@ -1,6 +1,6 @@
 //! The validation rules for libraries, in one table.
 
-use htex_base::finding::{rule_table, rules_page};
+use htex_base::finding::{colophon, rule_table, rules_page};
 
 rule_table! {
     LIBRARY_UNRECOGNISED Error:
@@ -96,8 +96,8 @@ rule_table! {
         "It can be found and cannot be opened.",
         "Take it out with `htex lib cat`, see `htex validate`, correct it and pack the library again.";
     LIBRARY_ENTRY_WRONG Error:
-        "The index states other tags, conditions, models or rights than the texture.",
-        "Searches find the wrong textures.",
+        "The index states something else of a texture than the texture does.",
+        "There is a finding for each of tags, models, conditions, contact, law, licence, author and quantity that differs: searches find the wrong textures.",
         "Pack the library again.";
     LIBRARY_OBJECT_UNUSED Error:
         "Shared bytes are used by no texture.",
@@ -116,9 +116,6 @@ rule_table! {
 const HEAD: &str = "\
 # Findings of libraries
 
-Generated from the table of rules in `sdk/core/format/src/library/rules.rs` by
-`cargo xtask generate`.
-
 A finding has a code, a severity, a place and a message. The place is `/header`, `/root`, `/leaves/N` or `/leaves/N/entries/M`, counted
 from 0, and empty for the file as a whole. A library is valid when no finding is an error. The meaning of a code never changes.
 [htexlib-1.md](htexlib-1.md) is the format.
@@ -126,5 +123,5 @@ from 0, and empty for the file as a whole. A library is valid when no finding is
 
 /// Generates the page of all rules: `spec/library-findings.md`.
 pub fn findings_page() -> String {
-    rules_page(HEAD, RULES)
+    rules_page(HEAD, RULES) + &colophon("sdk/core/format/src/library/rules.rs")
 }

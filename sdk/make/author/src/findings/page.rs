@@ -1,6 +1,6 @@
 //! Generator of `spec/recording-findings.md` from the table of rules.
 
-use htex_base::finding::rules_page;
+use htex_base::finding::{colophon, rules_page};
 
 use super::{
     RULES, band, coefficient, course, differing, levels, plausible, quantile, segments, spikes,
@@ -11,9 +11,6 @@ use crate::segments::definition as chosen;
 
 const HEAD: &str = "\
 # Findings in recordings
-
-Generated from the table of rules in `sdk/make/recording/src/rules.rs` by
-`cargo xtask generate`.
 
 `htex validate rec.csv` checks a recording (any file that is neither an asset nor a scene); `htex fit`, `process`,
 `compare` and `tradeoff` print the same findings as warnings and notes, and a strict reading refuses a recording with
@@ -56,5 +53,6 @@ pub fn findings_page() -> String {
         segments::definition(),
         differing::definition(),
     ];
-    rules_page(&format!("{HEAD}\n## Thresholds\n\n{}\n## Codes\n", definitions.concat()), RULES)
+    let head = format!("{HEAD}\n## Thresholds\n\n{}\n## Codes\n", definitions.concat());
+    rules_page(&head, RULES) + &colophon("sdk/make/recording/src/rules.rs")
 }

@@ -65,7 +65,8 @@ def compare_cases(page, path: Path) -> tuple[int, int]:
             continue
         asset = page.read_asset(path.parent / cases["asset"], case["model"])
         known = [asset[0]["conditions"][element["condition"]] for element in asset[1]["at"]]
-        motion = case["speed_mm_s"], case["force_n"]
+        # The page has no direction: a speed is that of either.
+        motion = abs(case["speed_mm_s"]), case["force_n"]
         here = [i for i, one in enumerate(known) if (one.get("speed_mm_s", 0), one.get("force_n", 0)) == motion]
         if not here and len(known) > 1:
             continue

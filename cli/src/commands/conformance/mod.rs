@@ -8,7 +8,7 @@ use clap::Args;
 use super::subcommands;
 use crate::failure::Result;
 
-/// Test third-party readers on the conformance files
+/// Test third-party readers and players
 ///
 /// The specification comes with several hundred files, each with what a reader must find in it or a
 /// player must play from it. `htex conformance run` starts your program once for each file, and

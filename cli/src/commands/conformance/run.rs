@@ -7,7 +7,7 @@ use htex_check::conformance::{Class, CommandLine, ConformanceError, Options, Par
 
 use crate::failure::{Exit, Failure, Result};
 use crate::located;
-use crate::output::{print, print_json, write, write_file};
+use crate::output::{print, print_json, write_file};
 use crate::shared;
 use crate::signals;
 
@@ -96,7 +96,7 @@ impl Run {
         if self.json {
             print_json(&report)?;
         } else if self.markdown {
-            write(&report.to_markdown())?;
+            print(&report.to_markdown())?;
         } else {
             print(&report.to_string())?;
         }

@@ -82,12 +82,15 @@ fn failed(status: ExitStatus, errors: &[u8]) -> String {
     format!("it ended with {status}{}", said.unwrap_or_default())
 }
 
-/// Returns the start of a text that came from a reader.
+/// Returns the start of a text that came from a reader, on one line.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
-    let mut chars = text.trim().chars();
-    let start: String = chars.by_ref().take(MOST).collect();
-    if chars.next().is_some() { start + "…" } else { start }
+    // Of a long text, only the beginning is looked at.
+    let start: String = text.trim().chars().take(4 * MOST).collect();
+    let line = start.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut chars = line.chars();
+    let kept: String = chars.by_ref().take(MOST).collect();
+    if chars.next().is_some() { kept + "…" } else { kept }
 }
 
 /// The output of a reader, collected by a thread.

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser};
 use htex::play::exploration::CEILING;
 use htex::{Motion, Representation, Texture};
-use htex_base::files::read_regular;
+use htex_base::files::{AtFile, read_regular};
 use htex_base::finding::Report;
 use htex_check::conformance::Part;
 use htex_format::library::{Limits as LibraryLimits, LocalFile, validate_source};
@@ -134,7 +134,7 @@ fn library(file: &Path, given: &Map<String, Value>) -> Result<Report> {
 }
 
 fn question<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T> {
-    let bytes = read_regular(file, MOST_BYTES)?;
+    let bytes = read_regular(file, MOST_BYTES).reading(file)?;
     let question = serde_json::from_slice(&bytes);
     question.map_err(|error| Failure::Other(format!("{}: {error}", shown(file))))
 }
@@ -215,7 +215,7 @@ enum Step {
 }
 
 fn baked(question: BakedQuestion) -> Result<Value> {
-    let bytes = read_regular(&question.block, MOST_BYTES)?;
+    let bytes = read_regular(&question.block, MOST_BYTES).reading(&question.block)?;
     let block = match Block::open(&bytes) {
         Ok(block) => block,
         Err(error) => {

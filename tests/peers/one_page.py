@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from independent.asset import read_asset
+from independent.law import exponents
 from independent.models import read_models
 from independent.playing import close
 
@@ -83,6 +84,20 @@ def compare_cases(page, path: Path) -> tuple[int, int]:
     return at, elsewhere
 
 
+def compare_laws(page, spec: Path) -> None:
+    """The law that is assumed for each contact and quantity, at the double speed and half as much force again."""
+    manifest, *rest = page.read_asset(spec / "playing-conformance/one_condition.htex", "org.htex.sslope")
+    known, level = manifest["conditions"][0], rest[0]["at"][0]["level_rms"]
+    without = {key: value for key, value in manifest.items() if key not in ("law", "contact")}
+    for contact in ("finger", "tool", "unknown", None):
+        for quantity in ("lateral_force", "normal_force", "acceleration", "velocity", "displacement"):
+            changed = {**without, "quantity": quantity} | ({"contact": contact} if contact else {})
+            a, b, c = exponents(changed)
+            played = page.play(changed, *rest, 2 * known["speed_mm_s"], 1.5 * known["force_n"])
+            expected = 2**a, min(level * 2**b * 1.5**c, 4 * level)
+            assert np.allclose(played[:2], expected, rtol=1e-12), (contact, quantity, played[:2], expected)
+
+
 def compare_noise(page, spec: Path) -> float:
     """The difference between the level of the noise and the level of the asset, dB."""
     asset = page.read_asset(spec / "playing-conformance/one_condition.htex", "org.htex.sslope")
@@ -135,6 +150,7 @@ def main() -> int:
     for path in sorted(spec.glob("playing-conformance/*.json")):
         counts = compare_cases(page, path)
         at, elsewhere = at + counts[0], elsewhere + counts[1]
+    compare_laws(page, spec)
     level_db = compare_noise(page, spec)
     assert abs(level_db) < 0.1, level_db
     print(f"{lines} lines; {fields} fields of {assets} assets are the same, {refused} assets are refused")

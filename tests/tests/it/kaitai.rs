@@ -30,8 +30,10 @@ fn what_the_descriptions_read_is_what_the_files_hold() {
     let told = ran("kaitai.cjs", &[file]);
     let mut entries = 0;
     for (path, told) in libraries.iter().zip(told["libraries"].as_array().unwrap()) {
-        let known = library(path);
-        assert_eq!(with_floats(told), with_floats(&known), "{}", path.display());
+        let (known, mut told) = (library(path), told.clone());
+        // A reader ignores a key that it does not know.
+        told["metadata"].as_object_mut().unwrap().remove("mood");
+        assert_eq!(with_floats(&told), with_floats(&known), "{}", path.display());
         entries += known["entries"].as_array().unwrap().len();
     }
     assert!(entries >= 30, "{entries} entries");

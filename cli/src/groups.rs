@@ -13,7 +13,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Inspect", &["info", "spectrum", "compare", "validate", "explain", "formats"]),
     ("Play", &["synth", "play", "render", "plan", "gain", "export", "bake"]),
     ("Libraries", &["build", "lib"]),
-    ("Plugins and devices", &["plugin", "device"]),
+    ("Plugins and devices", &["plugin", "device", "conformance"]),
     ("Laboratory", &["record", "response", "study", "studio"]),
     ("Tools", &["completions", "man", "schema"]),
 ];

@@ -32,7 +32,6 @@ mod report;
 mod scene_sound;
 mod scenes;
 mod schemas;
-#[cfg(any(feature = "build", feature = "lab"))]
 mod shared;
 mod signals;
 mod wasm_limits;

@@ -131,6 +131,13 @@ pub const GLTF_VALIDATOR: Need = Need {
     for_wasm: false,
 };
 
+/// The compiler of Kaitai Struct, its runtime, and a reader of YAML.
+pub const KAITAI: Need = Need {
+    what: "the compiler of Kaitai Struct",
+    how: "npm install --prefix target/node kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 yaml@2",
+    for_wasm: false,
+};
+
 impl Need {
     /// Returns `there`, which says whether the software is installed. If it is not installed, also
     /// records the running test as skipped, so that it is listed at the end of `cargo test`

@@ -5,6 +5,7 @@ mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
 mod completions;
+mod conformance;
 mod demo;
 mod device;
 mod edit;
@@ -98,6 +99,7 @@ subcommands! {
         Completions(completions::Completions),
         Man(manual::Manual),
         Schema(schema::Schema),
+        Conformance(conformance::Conformance),
         Plugin(plugin::Plugin),
         Device(device::Device),
     }

@@ -95,3 +95,94 @@ fn strict_refuses_warnings(folder: &str, golden: &[Value]) {
         assert_eq!(code, Some(i32::from(!is_clean(report))), "{}", report["file"]);
     }
 }
+
+const SPEC: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec");
+
+/// Runs a reader on the conformance files, and returns the report.
+fn reader(command: &str, more: &[&str]) -> Value {
+    let place = Place::new();
+    let arguments = ["conformance", "run", "--files", SPEC, "--json", "--command", command];
+    let run = place.run(&[&arguments[..], more].concat());
+    let report: Value =
+        serde_json::from_str(&run.text()).unwrap_or_else(|_| panic!("{}", run.error()));
+    assert_eq!(run.code(), i32::from(report["passed"] != true), "{report:#}");
+    report
+}
+
+/// Each count of the matrix is whole, and every class has one for each part that concerns it.
+fn passes(report: &Value, most_left_out: usize) {
+    assert_eq!(report["differences"], serde_json::json!([]));
+    assert_eq!(report["passed"], true);
+    let mut counts = 0;
+    for row in report["matrix"]["rows"].as_array().unwrap() {
+        for (part, count) in row["counts"].as_object().unwrap() {
+            assert_eq!(count["passed"], count["all"], "{part}");
+            assert!(count["all"].as_u64().unwrap() > 10, "{part}: {count}");
+            counts += 1;
+        }
+    }
+    assert_eq!(counts, 5 + 5 + 2);
+    assert!(report["left_out"].as_array().unwrap().len() <= most_left_out);
+}
+
+/// This program as a third-party reader: with and without the few files that have options.
+#[test]
+fn this_program_passes_as_a_reader() {
+    let own = format!("'{}' conformance answer {{part}} {{file}}", env!("CARGO_BIN_EXE_htex"));
+    let report = reader(&format!("{own} --options {{options}}"), &["--jobs", "4"]);
+    passes(&report, 0);
+    let place = Place::new();
+    let arguments = ["conformance", "run", "--files", SPEC, "--command", &own];
+    let more = ["--part", "libraries,playing", "--badge", "badge.svg", "--markdown"];
+    let run = place.run(&[&arguments[..], &more].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    assert!(run.text().starts_with("| class | libraries | playing |\n"), "{}", run.text());
+    assert!(!run.text().contains("- `"), "{}", run.text());
+    let badge = std::fs::read_to_string(place.path("badge.svg")).unwrap();
+    assert!(badge.starts_with("<svg ") && badge.contains(" passed</text>"), "{badge}");
+    // Files are looked for beside the command, where a build has none.
+    let run = place.run(&["conformance", "run", "--command", &own]);
+    run.failed(2, &["the conformance files are not in", "--files DIR"]);
+    let run = place.run(&["conformance", "run", "--files", SPEC, "--command", "reader"]);
+    run.failed(2, &["has no `{file}` among its arguments"]);
+    let run = place.run(&["conformance", "run", "--files", SPEC, "--command", "/absent {file}"]);
+    run.failed(2, &["the command `/absent {file}` cannot be started"]);
+}
+
+/// The reader and player in Python that was written from the specifications alone.
+#[test]
+fn the_independent_reader_passes_as_a_process() {
+    let python = xtask::bench::python().filter(|python| {
+        let mut imports = std::process::Command::new(python);
+        let output = imports.args(["-c", "import blake3, cryptography, jsonschema"]).output();
+        output.is_ok_and(|output| output.status.success())
+    });
+    if !xtask::needs::PEERS.met(python.is_some()) {
+        return;
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/peers/conformance_reader.py");
+    let python = python.unwrap().display().to_string();
+    let command = format!("'{python}' -B '{script}' {{part}} {{file}} {{options}}");
+    passes(&reader(&command, &["--jobs", "4", "--timeout", "120"]), 0);
+}
+
+/// A reader that finds nothing is told of each invalid file.
+#[cfg(unix)]
+#[test]
+fn a_reader_that_accepts_everything_fails() {
+    let yes = r#"sh -c 'echo "{\"verdict\": \"valid\", \"findings\": []}"' {file}"#;
+    let report = reader(yes, &["--part", "libraries", "--class", "reader"]);
+    let count = &report["matrix"]["rows"][0]["counts"]["libraries"];
+    let differences = report["differences"].as_array().unwrap();
+    let missed = count["all"].as_u64().unwrap() - count["passed"].as_u64().unwrap();
+    assert_eq!(missed, differences.len() as u64);
+    assert!(missed > 50, "{missed}");
+    let place = Place::new();
+    let arguments =
+        ["conformance", "run", "--files", SPEC, "--part", "libraries", "--command", yes];
+    let run = place.run(&arguments);
+    assert_eq!(run.code(), 1);
+    let first = "library-conformance/library_asset_changed.htexlib (validator): findings: no finding \
+         instead of LIBRARY_ASSET_CHANGED";
+    assert!(run.text().starts_with(first), "{}", run.text());
+}

@@ -1,7 +1,9 @@
 //! The checkers of plugins: for models ([`model`]) and for devices ([`device`]). There is one check
 //! for each guarantee of the plugin's ABI. [`harness`] runs each check in a separate process, so
-//! that a crash or an endless loop becomes a finding.
+//! that a crash or an endless loop becomes a finding. [`conformance`] runs third-party readers on the
+//! conformance files.
 
+pub mod conformance;
 pub mod device;
 pub mod harness;
 pub mod model;

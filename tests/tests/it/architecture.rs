@@ -76,6 +76,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-base",
             "htex-dsp",
+            "htex-player",
             "htex-model",
             "htex-host",
             "htex-format",

@@ -33,6 +33,31 @@ fn a_reader_written_from_the_text_agrees() {
     println!("{told}");
 }
 
+/// The page that describes the format in 600 words, and the program of 60 lines that follows it.
+#[test]
+fn one_page_is_enough_to_play_at_conditions() {
+    let page = std::fs::read_to_string(workspace().join("spec/htex-in-one-page.md")).unwrap();
+    let is_word = |word: &&str| word.chars().any(char::is_alphanumeric);
+    let words = page.split_whitespace().filter(is_word).count();
+    assert!(words <= 600, "{words} words");
+    let python = python();
+    let there = xtask::needs::PEERS.met(python.is_some());
+    let Some(python) = python.filter(|_| there) else {
+        return;
+    };
+    let output = Command::new(&python)
+        .arg("one_page.py")
+        .arg(workspace().join("spec"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .current_dir(workspace().join("tests/peers"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}{said}");
+    println!("{told}");
+}
+
 /// The Python with the packages of `tests/peers/independent/requirements.txt` that the environment
 /// names; otherwise the one of `.ci/run`, otherwise the system's.
 fn python() -> Option<PathBuf> {

@@ -20,6 +20,7 @@ mod gltf;
 mod golden_models;
 mod golden_pipeline;
 mod independent;
+mod kaitai;
 mod levels;
 mod library_elsewhere;
 mod lines;

@@ -50,7 +50,18 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .env("HTEX_PACKAGE", &package)
         .env("HTEX_FIXTURES", &fixtures)
         .env("HTEX_EXAMPLE", fs_err::canonicalize(example)?)
-        .env("HTEX_CHROMIUM", which(chromium)))
+        .env("HTEX_CHROMIUM", which(chromium)))?;
+    conformance(&package)
+}
+
+/// Tests the package as a reader and player on the conformance files.
+fn conformance(package: &Path) -> Result<()> {
+    let script = workspace().join("sdk/bindings/web/tests/conformance.mjs");
+    let (script, package) = (script.display(), package.display());
+    let reader = format!("node '{script}' '{package}' {{part}} {{file}}");
+    run(program(&fixtures::command()?, &workspace())
+        .args(["conformance", "run", "--files", "spec", "--command", &reader, "--jobs", "2"])
+        .args(["--part", "assets,libraries,recordings,playing"]))
 }
 
 /// Builds a library whose catalogue plays textures with the package.

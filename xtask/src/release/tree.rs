@@ -22,6 +22,16 @@ const FILES: [(&str, &str); 5] = [
     ("xtask/src/release/README.md", "README.md"),
 ];
 
+/// The folders of conformance files in `spec`.
+const CONFORMANCE: [&str; 6] = [
+    "conformance",
+    "library-conformance",
+    "scene-conformance",
+    "recording-conformance",
+    "baked-conformance",
+    "playing-conformance",
+];
+
 /// The page of catalogues.
 const CATALOGUE: &str = "catalogue.html";
 
@@ -51,6 +61,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     for (from, to) in FILES {
         copy(&workspace().join(from), &folder.join(to))?;
     }
+    conformance(&folder)?;
     help(platform, &folder)?;
     if let Some(notices) = notices {
         put_notices(notices, &folder.join("share/doc/htex"))?;
@@ -76,6 +87,19 @@ fn catalogue(folder: &Path) -> Result<()> {
         crate::studio::studio(&page)?;
     }
     copy(&page.join(CATALOGUE), &folder.join("share/htex/studio").join(CATALOGUE))
+}
+
+/// Copies the files on which `htex conformance run` runs a reader.
+fn conformance(folder: &Path) -> Result<()> {
+    let to = folder.join("share/htex/conformance");
+    for part in CONFORMANCE {
+        let from = workspace().join("spec").join(part);
+        for file in crate::places::files(&from)? {
+            let name = file.file_name().unwrap_or_default();
+            copy(&file, &to.join(part).join(name))?;
+        }
+    }
+    Ok(())
 }
 
 fn executable(system: System) -> &'static str {

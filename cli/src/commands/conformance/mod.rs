@@ -1,0 +1,33 @@
+//! The subcommand `htex conformance` for authors of readers and players.
+
+mod answer;
+mod run;
+
+use clap::Args;
+
+use super::subcommands;
+use crate::failure::Result;
+
+/// Test third-party readers and players
+///
+/// The specification comes with several hundred files, each with what a reader must find in it or a
+/// player must play from it. `htex conformance run` starts your program once for each file, and
+/// counts what it gets right. `spec/conformance-protocol.md` says what your program must print.
+#[derive(Args)]
+pub(crate) struct Conformance {
+    #[command(subcommand)]
+    command: Command,
+}
+
+subcommands! {
+    Command {
+        Run(run::Run),
+        Answer(answer::Answer),
+    }
+}
+
+impl Conformance {
+    pub(crate) fn run(self) -> Result {
+        self.command.run()
+    }
+}

@@ -1,0 +1,142 @@
+//! Runs a third-party reader on the conformance files of `spec`, and counts what it gets right.
+//!
+//! The reader is a program in any language. The runner starts it once for each file, and compares
+//! the JSON object that it prints with what the conformance files say. `spec/conformance-protocol.md`
+//! specifies the object.
+//!
+//! The reader may hang, print without end, or start programs of its own. Each run therefore has a
+//! time limit and a limit of output, and is a process group of its own, which is killed at the end
+//! ([`run`]). Systems other than Unix have no process groups; there only the reader itself is
+//! killed.
+#![forbid(unsafe_code)]
+
+mod answer;
+mod compare;
+mod line;
+mod process;
+mod report;
+mod run;
+mod tasks;
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use serde::Serialize;
+
+pub use line::CommandLine;
+pub use report::{Count, Difference, Left, Matrix, Report, Row};
+pub use run::{Options, run};
+
+/// A kind of conformance file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Part {
+    Assets,
+    Libraries,
+    Scenes,
+    Recordings,
+    Baked,
+    Playing,
+}
+
+impl Part {
+    /// All parts, in the order of the matrix.
+    pub const ALL: [Self; 6] =
+        [Self::Assets, Self::Libraries, Self::Scenes, Self::Recordings, Self::Baked, Self::Playing];
+
+    /// Returns the name, as the reader gets it for `{part}`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Assets => "assets",
+            Self::Libraries => "libraries",
+            Self::Scenes => "scenes",
+            Self::Recordings => "recordings",
+            Self::Baked => "baked",
+            Self::Playing => "playing",
+        }
+    }
+
+    /// Returns the folder of the files, in `spec`.
+    pub const fn folder(self) -> &'static str {
+        match self {
+            Self::Assets => "conformance",
+            Self::Libraries => "library-conformance",
+            Self::Scenes => "scene-conformance",
+            Self::Recordings => "recording-conformance",
+            Self::Baked => "baked-conformance",
+            Self::Playing => "playing-conformance",
+        }
+    }
+}
+
+/// What a program is, by the conformance classes of the specification.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Class {
+    /// Finds every mistake of a file, by code and pointer.
+    Validator,
+    /// Accepts valid files and refuses invalid ones.
+    Reader,
+    /// Computes the numbers that are played.
+    Player,
+}
+
+impl Class {
+    /// All classes, in the order of the matrix.
+    pub const ALL: [Self; 3] = [Self::Validator, Self::Reader, Self::Player];
+
+    /// Returns the name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Validator => "validator",
+            Self::Reader => "reader",
+            Self::Player => "player",
+        }
+    }
+}
+
+macro_rules! names {
+    ($($kind:ident, $what:literal;)*) => {$(
+        impl fmt::Display for $kind {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl FromStr for $kind {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                let found = Self::ALL.into_iter().find(|one| one.name() == text);
+                found.ok_or_else(|| {
+                    let known = Self::ALL.map(Self::name).join(", ");
+                    format!(concat!("there is no ", $what, " `{}`; there are {}"), text, known)
+                })
+            }
+        }
+    )*};
+}
+
+names! {
+    Part, "part";
+    Class, "class";
+}
+
+/// The error when a reader cannot be run on the conformance files.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConformanceError {
+    /// The command is not one that can be started with a file.
+    #[error("the command `{command}` {problem}")]
+    Command { command: String, problem: String },
+    /// The folder has no conformance files, or not of this part.
+    #[error("{}: {problem}; give the folder `spec` of htex, or the one of a release", path.display())]
+    Files { path: PathBuf, problem: String },
+    /// A conformance file cannot be read, or a question cannot be written.
+    #[error("{}: {error}", path.display())]
+    File { path: PathBuf, error: std::io::Error },
+    /// Somebody stopped the run.
+    #[error("it was stopped after {done} of {all} files")]
+    Stopped { done: usize, all: usize },
+}

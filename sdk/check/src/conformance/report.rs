@@ -149,10 +149,7 @@ impl Report {
     /// Returns a badge as SVG: how much passes, green if everything does.
     pub fn to_badge(&self) -> String {
         let count = self.total();
-        let right = match self.passed {
-            true => format!("{} passed", count.all),
-            false => count.to_string(),
-        };
+        let right = if self.passed { format!("{} passed", count.all) } else { count.to_string() };
         let colour = if self.passed { "#2e7d32" } else { "#b71c1c" };
         let left = "htex conformance";
         // About the width of a character of 11 px; `textLength` makes it exact.

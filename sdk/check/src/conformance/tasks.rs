@@ -193,9 +193,10 @@ fn baked(folder: &Path, file: BakedFile) -> Task {
         expected: Expected {
             verdict: Verdict::of(file.valid),
             findings: Some(rule.into_iter().collect()),
-            values: match file.valid {
-                true => Values::Hashes(hashes.into_iter().flatten().collect()),
-                false => Values::None,
+            values: if file.valid {
+                Values::Hashes(hashes.into_iter().flatten().collect())
+            } else {
+                Values::None
             },
         },
     }
@@ -217,7 +218,7 @@ fn playing(folder: &Path, file: PlayingFile) -> Task {
             (Some(speed), Some(force)) => format!("{} at {speed} mm/s, {force} N", case.model),
             _ => format!("{} without a motion", case.model),
         },
-        expected: (!case.refused).then(|| Numbers {
+        expected: (!case.refused).then_some(Numbers {
             parameters: case.parameters,
             frequency_factor: case.frequency_factor,
             level_rms: case.level_rms,

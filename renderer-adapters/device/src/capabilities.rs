@@ -1,6 +1,6 @@
 //! Capabilities of an output.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
@@ -11,7 +11,16 @@ pub const RATE_PER_CARRIER: f64 = 2.5;
 
 /// Capabilities of an output. A native library passes them to the host as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    derive(schemars::JsonSchema),
+    schemars(
+        extend("if" = {
+            "properties": { "quantity": { "const": "display_voltage" } }, "required": ["quantity"]
+        }),
+        extend("then" = { "required": ["limit"] })
+    )
+)]
 pub struct Capabilities {
     /// The physical quantity of the samples.
     pub quantity: Quantity,
@@ -22,17 +31,17 @@ pub struct Capabilities {
     pub default_rate_hz: f64,
     /// Largest magnitude of a sample that the output accepts, in the quantity's unit. If absent,
     /// there is no limit. A display voltage must have a limit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[cfg_attr(feature = "schemars", schemars(with = "f64", extend("exclusiveMinimum" = 0)))]
     pub limit: Option<f64>,
     /// Step between two adjacent output values, in the quantity's unit. If absent, the output takes
     /// floating-point values.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[cfg_attr(feature = "schemars", schemars(with = "f64", extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
     /// Frequency of the carrier that an electrovibration display needs, hertz.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[cfg_attr(feature = "schemars", schemars(with = "f64", extend("exclusiveMinimum" = 0)))]
     pub carrier_hz: Option<f64>,
     /// True if the output takes samples at the pace of a clock. False if the output takes samples
     /// as fast as they are generated, as a file does.
@@ -40,6 +49,11 @@ pub struct Capabilities {
     /// Preferred block size, frames.
     #[cfg_attr(feature = "schemars", schemars(range(min = 1, max = MAX_BLOCK_FRAMES)))]
     pub block_frames: u32,
+}
+
+/// Reads a number that may be absent, but not `null`.
+fn present<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(deserializer).map(Some)
 }
 
 impl Capabilities {

@@ -13,6 +13,8 @@ const LIMITS: Limits = Limits {
     total_bytes: 1 << 20,
     ratio: 200,
     json_depth: 32,
+    json_nodes: 1 << 16,
+    conditions: 1 << 10,
     values: 1 << 16,
 };
 

@@ -99,7 +99,7 @@ def read_directory(data: bytes, end: End, limits: dict[str, int], findings: Find
             return entries
         at = after
         check_record(entry, names, limits, findings)
-        next_position = check_local(data, entry, position, end, findings)
+        next_position = check_local(data, entry, position, findings)
         if next_position is None:
             return entries
         position = next_position
@@ -107,7 +107,7 @@ def read_directory(data: bytes, end: End, limits: dict[str, int], findings: Find
         entries.append(entry)
     if at != end.at:
         findings.add("ARCHIVE_INVALID", "", "the records do not end where the directory does")
-    if position != end.directory_at:
+    elif position != end.directory_at:
         findings.add("ARCHIVE_EXTRA_DATA", "", "bytes between the last entry and the directory")
     if total > limits["total_bytes"]:
         findings.add("ARCHIVE_TOO_LARGE")
@@ -158,12 +158,13 @@ def check_record(entry: Entry, names: set[str], limits: dict[str, int], findings
         findings.add("ENTRY_RATIO", "", entry.name)
 
 
-def check_local(data: bytes, entry: Entry, position: int, end: End, findings: Findings) -> int | None:
+def check_local(data: bytes, entry: Entry, position: int, findings: Findings) -> int | None:
     """Compare the local header at `position`; where the entry's data end, or None to stop."""
     if entry.offset != position:
         findings.add("ARCHIVE_EXTRA_DATA", "", entry.name)
         return None
-    if position + LOCAL_BYTES > end.directory_at or data[position : position + 4] != LOCAL:
+    # The header, with its name, extra field and data, may reach into the directory: then bytes are left over below.
+    if position + LOCAL_BYTES > len(data) or data[position : position + 4] != LOCAL:
         findings.add("ARCHIVE_INVALID", "", entry.name)
         return None
     flags, method = struct.unpack_from("<HH", data, position + 6)
@@ -171,7 +172,7 @@ def check_local(data: bytes, entry: Entry, position: int, end: End, findings: Fi
     crc, packed, size, name, extra = struct.unpack_from("<IIIHH", data, position + 14)
     entry.data_at = position + LOCAL_BYTES + name + extra
     after = entry.data_at + entry.packed
-    if after > end.directory_at:
+    if after > len(data):
         findings.add("ARCHIVE_INVALID", "", entry.name)
         return None
     text = data[position + LOCAL_BYTES : position + LOCAL_BYTES + name].decode("latin-1")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 SAME = 0.05
-AT_GROUP = 1e-12
+AT_GROUP = 1e-9
 
 
 def same(a: float, b: float) -> bool:

@@ -23,6 +23,7 @@ _NUMBER, _PART = r"(?:0|[1-9][0-9]*)", r"(?:0|[1-9][0-9]*|[0-9]*[a-zA-Z-][0-9a-z
 SEMVER = re.compile(
     rf"({_NUMBER})\.({_NUMBER})\.({_NUMBER})(?:-({_PART}(?:\.{_PART})*))?(?:\+[0-9a-zA-Z-]+(?:\.[0-9a-zA-Z-]+)*)?"
 )
+LARGEST_OF_A_SEMANTIC_VERSION = 2**64 - 1
 EXTENSION = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){2,}/[1-9][0-9]*")
 
 
@@ -122,14 +123,15 @@ def check_representations(manifest: dict, findings: Findings) -> None:
         if model in ids:
             findings.add("MODEL_DUPLICATE", pointer + "/model")
         ids.add(model)
-        if not SEMVER.fullmatch(representation["model_version"]):
+        if not is_semantic(representation["model_version"]):
             findings.add("MODEL_VERSION_INVALID", pointer + "/model_version")
         is_coded = CODED in manifest.get("extensions_required", [])
         check_stored_fields(representation["fields"], is_coded, pointer + "/fields", findings)
         if not representation["at"]:
             findings.add("AT_EMPTY", pointer + "/at")
         check_at(representation["at"], pointer + "/at", len(manifest["conditions"]), largest, findings)
-        if "triangles" in representation:
+        # An empty list counts as absent.
+        if representation.get("triangles"):
             check_triangles(manifest["conditions"], representation, pointer, findings)
 
 
@@ -212,7 +214,7 @@ def check_plugins(manifest: dict, findings: Findings) -> None:
         model = plugin["model"]
         if not MODEL_ID.fullmatch(model):
             findings.add("PLUGIN_INVALID", pointer + "/model")
-        if not SEMVER.fullmatch(plugin["version"]):
+        if not is_semantic(plugin["version"]):
             findings.add("PLUGIN_INVALID", pointer + "/version")
         if plugin["file"] != f"plugins/{model}.wasm":
             findings.add("PLUGIN_INVALID", pointer + "/file")
@@ -237,10 +239,14 @@ def check_extensions(manifest: dict, findings: Findings) -> None:
         findings.add("EXTENSION_REQUIRED_UNKNOWN", f"/extensions_required/{index}")
 
 
+def is_semantic(version: str) -> bool:
+    return version_key(version) is not None
+
+
 def version_key(version: str):
     """A key that orders semantic versions, or None where it is none."""
     match = SEMVER.fullmatch(version)
-    if not match:
+    if not match or any(int(match.group(i)) > LARGEST_OF_A_SEMANTIC_VERSION for i in (1, 2, 3)):
         return None
     release = tuple(int(match.group(i)) for i in (1, 2, 3))
     if match.group(4) is None:
@@ -277,6 +283,7 @@ def check_field(field: dict, described: dict | None, newer: bool, pointer: str, 
         return
     if field.get("list", False) != (described["kind"]["type"] == "list"):
         findings.add("FIELD_KIND_WRONG", pointer)
+        return
     expected = None if described["unit"] == "1" else described["unit"]
     if field.get("unit") != expected:
         findings.add("FIELD_UNIT_WRONG", pointer)

@@ -2,7 +2,7 @@
 
 The result has dict, list, str, float, bool and None. Every number is a float (binary64), and a `Whole` if it is of
 digits alone and binary64 does not have it. The first error in the order of the text is raised as `Refused` with the
-code SYNTAX, TYPE or TOO_DEEP, to which a caller adds its prefix.
+code SYNTAX, TYPE, TOO_DEEP or TOO_LARGE, to which a caller adds its prefix.
 """
 
 from __future__ import annotations
@@ -19,10 +19,13 @@ HEX4 = re.compile(r"[0-9a-fA-F]{4}")
 ESCAPES = {'"': '"', "\\": "\\", "/": "/", "b": "\b", "f": "\f", "n": "\n", "r": "\r", "t": "\t"}
 
 
-def parse(data: bytes, depth_limit: int, prefix: str = "JSON_"):
-    """Parse `data`, or raise `Refused` with `prefix` + SYNTAX, TOO_DEEP or TYPE."""
-    if depth_of(data) > depth_limit:
+def parse(data: bytes, depth_limit: int, prefix: str = "JSON_", nodes: int | None = None):
+    """Parse `data`, or raise `Refused` with `prefix` + SYNTAX, TOO_DEEP, TOO_LARGE or TYPE."""
+    depth, count = size_of(data)
+    if depth > depth_limit:
         raise Refused(prefix + "TOO_DEEP")
+    if nodes is not None and count > nodes:
+        raise Refused(prefix + "TOO_LARGE")
     complete = True
     try:
         text = data.decode("utf-8")
@@ -35,9 +38,9 @@ def parse(data: bytes, depth_limit: int, prefix: str = "JSON_"):
     return value
 
 
-def depth_of(data: bytes) -> int:
-    """The depth of brackets outside strings, counted without parsing."""
-    depth = deepest = 0
+def size_of(data: bytes) -> tuple[int, int]:
+    """The depth of brackets outside strings, and how many brackets open and commas are there, without parsing."""
+    depth = deepest = nodes = 0
     in_string = skip = False
     for byte in data:
         if skip:
@@ -51,10 +54,14 @@ def depth_of(data: bytes) -> int:
             in_string = True
         elif byte in (0x5B, 0x7B):
             depth += 1
+            nodes += 1
             deepest = max(deepest, depth)
         elif byte in (0x5D, 0x7D):
-            depth -= 1
-    return deepest
+            # One that closes nothing is no JSON, which is found later.
+            depth = max(depth - 1, 0)
+        elif byte == 0x2C:
+            nodes += 1
+    return deepest, nodes
 
 
 class Whole(float):

@@ -83,13 +83,8 @@ def read_library(data: bytes, models: Models, limits: dict[str, int] | None = No
         header = read_header(data, limits, findings)
         page = data[header.root[0] : sum(header.root)]
         contents = unpack(page, limits["root_bytes"], "/root")
-        root = read_root(contents, header.leaf_count, header.leaves[1], header.shared[1], header.minor)
-        for number, length in enumerate(root.lengths):
-            if length > most_in_file(limits["leaf_bytes"]):
-                raise Refused("LIBRARY_PAGE_TOO_LARGE", f"/leaves/{number}")
-        for number, length in enumerate(root.spectra):
-            if length > most_in_file(limits["leaf_bytes"]):
-                raise Refused("LIBRARY_PAGE_TOO_LARGE", f"/spectra/{number}")
+        parts = (header.leaf_count, header.leaves[1], header.shared[1], header.minor)
+        root = read_root(contents, *parts, limits["leaf_bytes"])
         Validator(data, header, root, models, limits, findings).run()
     except Refused as refused:
         findings.items.append(refused.finding)
@@ -179,10 +174,20 @@ class Validator:
         if not findings.valid:
             self.findings.add("LIBRARY_ASSET_INVALID", pointer)
             return
-        if stated(asset.manifest) != (entry.tags, entry.models, entry.conditions, entry.law):
-            self.findings.add("LIBRARY_ENTRY_WRONG", pointer)
-        elif entry.rights not in (None, rights(asset.manifest)):
-            self.findings.add("LIBRARY_ENTRY_WRONG", pointer)
+        own = stated(asset.manifest)
+        pairs = [
+            ("tags", entry.tags, own.tags),
+            ("models", entry.models, own.models),
+            ("conditions", entry.conditions, own.conditions),
+            ("contact", entry.law[0][0], own.law[0][0]),
+            ("law", (entry.law[0][1:], entry.law[1]), (own.law[0][1:], own.law[1])),
+        ]
+        # A library of version 1.0 does not state the others.
+        if entry.rights is not None:
+            pairs += zip(("licence", "author", "quantity"), entry.rights, own.rights)
+        for what, theirs, ours in pairs:
+            if theirs != ours:
+                self.findings.add("LIBRARY_ENTRY_WRONG", pointer, what)
 
     def share(self, entry: Entry, pointer: str) -> None:
         for item in entry.objects:
@@ -248,8 +253,8 @@ def rights(manifest: dict) -> tuple:
     return start(manifest.get("license")), start(manifest.get("author")), manifest["quantity"]
 
 
-def stated(manifest: dict) -> tuple:
-    """Tags, models, conditions and law, as an entry states them."""
+def stated(manifest: dict) -> Entry:
+    """What an entry of a texture states."""
     ranges = []
     for key in ("speed_mm_s", "force_n"):
         recorded = [condition for condition in manifest["conditions"] if condition.get("segments") != 0]
@@ -260,4 +265,6 @@ def stated(manifest: dict) -> tuple:
     sources = [SOURCES.index(law[name]["source"]) if law else 2 for name in names]
     codes = (CONTACTS.index(manifest.get("contact", "unknown")), *sources)
     models = [representation["model"] for representation in manifest["representations"]]
-    return manifest.get("tags", []), models, tuple(ranges), (codes, exponents(manifest))
+    entry = Entry(tags=manifest.get("tags", []), models=models, conditions=tuple(ranges))
+    entry.law, entry.rights = (codes, exponents(manifest)), rights(manifest)
+    return entry

@@ -7,6 +7,8 @@ ASSET = {
     "total_bytes": 16777216,
     "ratio": 200,
     "json_depth": 32,
+    "json_nodes": 1000000,
+    "conditions": 10000,
     "values": 1048576,
 }
 SCENE = {"file_bytes": 1048576, "json_depth": 16, "surfaces": 256}

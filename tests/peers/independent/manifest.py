@@ -19,6 +19,7 @@ QUANTITIES = {
 }
 MINOR = 1
 VERSION = re.compile(r"(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)")
+LARGEST_OF_A_VERSION = 2**32 - 1
 STEP_STORES = ("u16", "u8", "packed", "coded")
 
 STEPS = t.Object({"scale*": t.Number(), "offset": t.Number(), "log": t.Boolean()})
@@ -171,7 +172,7 @@ def check_version(document: dict, key: str, prefix: str, minor: int = 0) -> bool
     if key not in document:
         raise Refused(prefix + "VERSION_MISSING")
     match = VERSION.fullmatch(document[key]) if isinstance(document[key], str) else None
-    if not match:
+    if not match or any(int(number) > LARGEST_OF_A_VERSION for number in match.groups()):
         raise Refused(prefix + "VERSION_INVALID", f"/{key}")
     if match.group(1) != "1":
         raise Refused(prefix + "VERSION_UNSUPPORTED", f"/{key}")
@@ -181,13 +182,13 @@ def check_version(document: dict, key: str, prefix: str, minor: int = 0) -> bool
 def read_manifest(data: bytes, limits: dict[str, int], findings: Findings) -> dict | None:
     """The stage of the manifest, and that of unknown keys; None after an error."""
     try:
-        return accept(parse(data, limits["json_depth"]), findings)
+        return accept(parse(data, limits["json_depth"], nodes=limits["json_nodes"]), limits, findings)
     except Refused as refused:
         findings.items.append(refused.finding)
         return None
 
 
-def accept(document, findings: Findings) -> dict:
+def accept(document, limits: dict[str, int], findings: Findings) -> dict:
     """The same after the text was parsed; raises `Refused`."""
     if not isinstance(document, dict):
         raise Refused("JSON_TYPE", "", "no object")
@@ -199,6 +200,8 @@ def accept(document, findings: Findings) -> dict:
     if isinstance(quantity, str) and quantity not in QUANTITIES:
         raise Refused("QUANTITY_UNKNOWN", "/quantity")
     t.check(MANIFEST, document, "JSON_TYPE")
+    if len(document["conditions"]) > limits["conditions"]:
+        raise Refused("CONDITIONS_TOO_MANY", "/conditions")
     if not newer:
         for pointer in sorted(t.unknown_keys(MANIFEST, document), key=lambda p: p.encode("utf-8")):
             findings.add("JSON_UNKNOWN_KEY", pointer)

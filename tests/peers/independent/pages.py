@@ -10,12 +10,15 @@ import unicodedata
 import zlib
 from dataclasses import dataclass, field
 from datetime import date
+from typing import Iterator
 
 from .findings import Refused
 
 MAX_TEXT, MAX_LIST, MAX_OBJECTS = 255, 64, 256
 MAX_PART = 250
 MAX_METADATA, MAX_ERROR = 8192, 100_001
+# An entry's name (two lengths), tags, models, conditions, law, length, objects and hash.
+LEAST_ENTRY = 2 + 1 + 1 + 1 + 25 + 1 + 1 + 32
 MINOR = 1
 QUANTITIES = ("lateral_force", "normal_force", "acceleration", "velocity", "displacement")
 FORBIDDEN = set('\\:*?"<>|')
@@ -133,8 +136,8 @@ class Cursor:
     def text(self) -> str:
         return self.utf8(self.text_bytes())
 
-    def following(self, count: int) -> list[bytes]:
-        result, before = [], b""
+    def following(self, count: int) -> Iterator[bytes]:
+        before = b""
         for _ in range(count):
             common = self.varint()
             if common > len(before):
@@ -143,8 +146,7 @@ class Cursor:
             if common + length > MAX_TEXT:
                 self.fail("a text is too long")
             before = before[:common] + self.take(length)
-            result.append(before)
-        return result
+            yield before
 
     def number(self) -> float:
         value = struct.unpack("<d", self.take(8))[0]
@@ -157,19 +159,22 @@ class Cursor:
             self.fail("bytes after the last value")
 
 
-def read_root(contents: bytes, leaves: int, leaves_length: int, shared_length: int, minor: int) -> Root:
-    """Section 4."""
+def read_root(contents: bytes, leaves: int, leaves_length: int, shared_length: int, minor: int, limit: int) -> Root:
+    """Section 4; `limit` is that of a leaf page's contents."""
     cursor = Cursor(contents, "/root")
     name = cursor.text()
     if any(steers(char) for char in name):
         raise Refused("LIBRARY_NAME_INVALID", "/root", "a control character")
-    count = cursor.varint()
+    # Of each leaf two lengths of its separator and its own length follow.
+    count = cursor.count(3)
     if count != leaves:
         raise Refused("LIBRARY_COUNT_WRONG", "/root", "another number of leaves than in the header")
-    separators = cursor.following(count)
-    lengths = [cursor.varint() for _ in range(count)]
-    if separators and separators[0] or any(a >= b for a, b in zip(separators, separators[1:])):
-        raise Refused("LIBRARY_ORDER_INVALID", "/root", "separators")
+    separators: list[bytes] = []
+    for separator in cursor.following(count):
+        if bool(separators) != bool(separator) or separators and separators[-1] >= separator:
+            raise Refused("LIBRARY_ORDER_INVALID", "/root", "separators")
+        separators.append(separator)
+    lengths = read_lengths(cursor, count, "/leaves", limit)
     if sum(lengths) != leaves_length:
         raise Refused("LIBRARY_HEADER_INVALID", "/root", "lengths")
     root = Root(name, separators, lengths)
@@ -178,12 +183,22 @@ def read_root(contents: bytes, leaves: int, leaves_length: int, shared_length: i
         if length > MAX_METADATA:
             cursor.fail("the metadata are too long")
         check_metadata(cursor.take(length))
-        root.spectra = [cursor.varint() for _ in range(count)]
+        root.spectra = read_lengths(cursor, count, "/spectra", limit)
         if sum(root.spectra) > shared_length:
             raise Refused("LIBRARY_HEADER_INVALID", "/root", "spectra")
         root.spectra_hash = cursor.take(32)
     cursor.end(minor > MINOR)
     return root
+
+
+def read_lengths(cursor: Cursor, count: int, pointer: str, limit: int) -> list[int]:
+    """The lengths in the file of one page a leaf."""
+    lengths = []
+    for number in range(count):
+        lengths.append(cursor.varint())
+        if lengths[-1] > most_in_file(limit):
+            raise Refused("LIBRARY_PAGE_TOO_LARGE", f"{pointer}/{number}")
+    return lengths
 
 
 def check_metadata(data: bytes) -> None:
@@ -234,7 +249,7 @@ def read_spectra(contents: bytes, pointer: str) -> int:
 def read_leaf(contents: bytes, pointer: str, minor: int) -> list[Entry]:
     """Section 5: the columns of a leaf."""
     cursor = Cursor(contents, pointer)
-    count = cursor.count()
+    count = cursor.count(LEAST_ENTRY)
     if count == 0:
         cursor.fail("no entry")
     words = read_texts(cursor)

@@ -59,7 +59,7 @@ class Voice:
         speeds = [condition.get("speed_mm_s") for condition in conditions]
         forces = [condition.get("force_n") for condition in conditions]
         self.stated = list(zip(speeds, forces))
-        if "triangles" in representation:
+        if representation.get("triangles"):
             self.axes = (StoredAxis(speeds), StoredAxis(forces))
             triangles = [tuple(map(int, triangle)) for triangle in representation["triangles"]]
             self.mesh = Mesh(self.positions(speeds, forces), triangles)
@@ -86,6 +86,8 @@ class Voice:
         return speed or 0.0, force or 0.0
 
     def at(self, speed: float, force: float) -> Played:
+        # A finger slides in either direction, and nothing else depends on the sign.
+        speed = abs(speed)
         point = (self.axes[0].position(speed), self.axes[1].position(force))
         weights, foot = self.mesh.weights(point)
         kept = sorted((i for i, w in weights.items() if w > LEFT_OUT), key=lambda i: self.mesh.points[i])
@@ -162,10 +164,14 @@ def compare_playing(folder: Path, models: Models, say: Callable[[str], None]) ->
             given = "speed_mm_s" in case
             where = f"{case['speed_mm_s']} mm/s {case['force_n']} N" if given else "no motion"
             what = f"{path.stem} {case['model']} {where}"
+            refused = case.get("refused", False)
             try:
                 voice = voices.setdefault(case["model"], None) or Voice(asset, models[case["model"]])
                 voices[case["model"]] = voice
                 played = voice.at(*(case["speed_mm_s"], case["force_n"]) if given else voice.default())
+                if refused:
+                    say(f"{what}: played, and is to be refused")
+                    continue
                 errors = {
                     "parameters": close(played.parameters, case["parameters"]),
                     "frequency_factor": close(played.frequency_factor, case["frequency_factor"]),
@@ -173,7 +179,9 @@ def compare_playing(folder: Path, models: Models, say: Callable[[str], None]) ->
                     "magnitude": close(played.magnitude(frequencies), case["magnitude"]),
                 }
             except Refusal as refusal:
-                say(f"{what}: refused: {refusal}")
+                agree += refused
+                if not refused:
+                    say(f"{what}: refused: {refusal}")
                 continue
             wrong = {key: f"{value:.3g} x the tolerance" for key, value in errors.items() if value > 1}
             agree += not wrong

@@ -12,6 +12,8 @@ TOKEN = re.compile(r"\s*([()]|[A-Za-z0-9.\-:+]+)", re.ASCII)
 ID = re.compile(r"[A-Za-z0-9.\-]+")
 REFERENCE = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?LicenseRef-[A-Za-z0-9.\-]+")
 ADDITION = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?AdditionRef-[A-Za-z0-9.\-]+")
+# A part that begins so is a reference or nothing.
+REFERENCES = ("LicenseRef-", "AdditionRef-", "DocumentRef-")
 WORDS = {"AND", "OR", "WITH", "and", "or", "with"}
 GNU = re.compile(r"(?:AGPL|GFDL|GPL|LGPL)-")
 
@@ -20,7 +22,8 @@ def read_ids() -> tuple[frozenset[str], frozenset[str]]:
     """Ids of licences and of exceptions."""
     lines = Path(__file__).with_name("spdx-ids.txt").read_text("ascii").split("\n", 1)[1]
     licences, exceptions = lines.split("\n\n")
-    return frozenset(licences.split()), frozenset(exceptions.split())
+    # Some deprecated ids of the list end in `+`, which no id of the grammar does.
+    return frozenset(filter(ID.fullmatch, licences.split())), frozenset(exceptions.split())
 
 
 LICENCES, EXCEPTIONS = read_ids()
@@ -86,15 +89,18 @@ class Expression:
         if token.endswith("+"):
             if token[:-1] not in LICENCES or GNU.match(token):
                 raise NotAnExpression(token)
-        elif token in WORDS or not ID.fullmatch(token):
-            raise NotAnExpression(token)
         else:
+            self.check_id(token)
             self.unknown.append(token)
 
     def exception(self, token: str) -> None:
         if ADDITION.fullmatch(token):
             return
-        if token in WORDS or not ID.fullmatch(token):
-            raise NotAnExpression(token)
+        self.check_id(token)
         if token not in EXCEPTIONS:
             self.unknown.append(token)
+
+    @staticmethod
+    def check_id(token: str) -> None:
+        if token in WORDS or token.startswith(REFERENCES) or not ID.fullmatch(token):
+            raise NotAnExpression(token)

@@ -139,7 +139,9 @@ fn valid_conformance_files_are_played() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let sound = name.starts_with("valid") || path.starts_with(cases_folder());
-        if !sound || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
+        // Of these assets a player refuses parameters, or a model.
+        let refused = name.starts_with("refused");
+        if !sound || refused || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
             continue;
         }
         let asset = htex::Texture::open(&path).unwrap();

@@ -101,8 +101,9 @@ fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<
         findings.add(rule::ARCHIVE_INVALID, "", message.to_owned());
         return None;
     };
+    let counts = [end.disks[0], end.disks[1], end.entries_here, end.entries];
     if end.zip64
-        || end.entries == ZIP64_16
+        || counts.contains(&ZIP64_16)
         || end.directory_bytes == ZIP64_32
         || end.directory_at == ZIP64_32
     {

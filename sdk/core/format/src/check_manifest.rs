@@ -36,9 +36,9 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     });
     check_sources(manifest, findings);
     check_made(manifest, findings);
-    check_conditions(&manifest.conditions, findings);
+    let are_sound = check_conditions(&manifest.conditions, findings);
     check_law(manifest, findings);
-    check_representations(manifest, findings);
+    check_representations(manifest, are_sound, findings);
     check_plugins(manifest, findings);
     check_extensions(manifest, findings);
 }
@@ -113,11 +113,13 @@ fn not_a_hash(text: &str) -> String {
     format!("{text:?} is not a hash; write the 64 hexadecimal digits of BLAKE3")
 }
 
-fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
+/// Checks the conditions. Returns whether they keep all rules.
+fn check_conditions(conditions: &[Condition], findings: &mut Findings) -> bool {
     findings.require(!conditions.is_empty(), rule::CONDITIONS_EMPTY, "/conditions", || {
         "there is no condition; add one, or {} when speed and force are not known".to_owned()
     });
     let mut seen = BTreeSet::new();
+    let mut are_sound = !conditions.is_empty();
     for (i, condition) in conditions.iter().enumerate() {
         let at = format_args!("/conditions/{i}");
         let numbers = [
@@ -131,6 +133,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
                 let message =
                     format!("{number} is negative or not finite; remove {key} if it is not known");
                 findings.add(rule::CONDITION_INVALID, format!("{at}/{key}"), message);
+                are_sound = false;
             }
         }
         // An absent value is compared as 0. Adding zero turns -0 into 0, so that both have the same
@@ -140,7 +143,9 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
         findings.require(new, rule::CONDITION_DUPLICATE, at, || {
             "an earlier condition has the same speed and force, of which an absent one counts as 0; keep one".to_owned()
         });
+        are_sound &= new;
     }
+    are_sound
 }
 
 fn check_law(manifest: &Manifest, findings: &mut Findings) {

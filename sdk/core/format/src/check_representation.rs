@@ -18,7 +18,8 @@ use htex_base::finding::Findings;
 // An epsilon is 2^-52, so this is the 2^-50 of the specification.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
-pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
+/// Checks all representations. `are_sound` is whether the manifest's conditions keep all rules.
+pub(crate) fn check_representations(manifest: &Manifest, are_sound: bool, findings: &mut Findings) {
     let some = !manifest.representations.is_empty();
     findings.require(some, rule::REPRESENTATIONS_EMPTY, "/representations", || {
         "there is no representation; fit a model".to_owned()
@@ -35,8 +36,8 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
         );
         check_model(representation, at, findings);
         check_fields(representation, manifest.is_coded(), at, findings);
-        check_conditions(representation, manifest, at, findings);
-        if let Err(error) = check_triangles_of(representation, &manifest.conditions) {
+        let are_sound = check_conditions(representation, manifest, at, findings) && are_sound;
+        if let Err(error) = check_triangles_of(representation, &manifest.conditions, are_sound) {
             let triangle = error.triangle().map(|i| format!("/{i}")).unwrap_or_default();
             let pointer = format!("{at}/triangles{triangle}");
             findings.add(rule::TRIANGLES_INVALID, pointer, error.to_string());
@@ -44,11 +45,13 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
     }
 }
 
-/// Checks the triangles of a representation. If the conditions of the representation break a rule,
-/// this function checks only the corners.
+/// Checks the triangles of a representation. If a condition, or an index of a condition, breaks a
+/// rule (`are_sound` is false), this function checks only the corners, and whether speed and force
+/// of each condition are known. Further errors would follow from the broken rule.
 fn check_triangles_of(
     representation: &Representation,
     conditions: &[Condition],
+    are_sound: bool,
 ) -> Result<(), TrianglesError> {
     let Representation { at, triangles, .. } = representation;
     if triangles.is_empty() {
@@ -57,20 +60,12 @@ fn check_triangles_of(
     check_corners(at.len(), triangles)?;
     let mut places = Vec::with_capacity(at.len());
     for (condition, fitted) in at.iter().enumerate() {
-        let Some(there) = conditions.get(fitted.condition) else {
-            // This index is reported by the check of conditions, so one finding is enough.
-            return Ok(());
-        };
-        match (there.speed_mm_s, there.force_n) {
-            (Some(speed), Some(force)) if is_size(speed) && is_size(force) => {
-                places.push([speed, force]);
-            }
-            // The check of the manifest's conditions reports these numbers.
-            (Some(_), Some(_)) => return Ok(()),
-            _ => return Err(TrianglesError::Unknown { condition }),
-        }
+        // The check of conditions reports an index that does not exist.
+        let Some(there) = conditions.get(fitted.condition) else { continue };
+        let place = there.speed_mm_s.zip(there.force_n);
+        places.push(place.ok_or(TrianglesError::Unknown { condition })?.into());
     }
-    check_triangles(&places, triangles)
+    if are_sound { check_triangles(&places, triangles) } else { Ok(()) }
 }
 
 fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {
@@ -146,12 +141,13 @@ impl Steps {
     }
 }
 
+/// Checks the elements of `at`. Returns whether each one has an index of its own.
 fn check_conditions(
     representation: &Representation,
     manifest: &Manifest,
     at: Arguments<'_>,
     findings: &mut Findings,
-) {
+) -> bool {
     findings.require(
         !representation.at.is_empty(),
         rule::AT_EMPTY,
@@ -160,18 +156,22 @@ fn check_conditions(
     );
     let conditions = manifest.conditions.len();
     let mut seen = BTreeSet::new();
+    let mut are_sound = true;
     for (i, fitted) in representation.at.iter().enumerate() {
         let at = format_args!("{at}/at/{i}");
         let index = fitted.condition;
         let pointer = format_args!("{at}/condition");
-        findings.require(index < conditions, rule::CONDITION_INDEX_INVALID, pointer, || {
+        let (exists, is_new) = (index < conditions, seen.insert(index));
+        findings.require(exists, rule::CONDITION_INDEX_INVALID, pointer, || {
             format!("there is no condition {index}; there are {conditions}, counted from 0")
         });
-        findings.require(seen.insert(index), rule::CONDITION_INDEX_DUPLICATE, pointer, || {
+        findings.require(is_new, rule::CONDITION_INDEX_DUPLICATE, pointer, || {
             format!("condition {index} is listed twice; keep one")
         });
+        are_sound &= exists && is_new;
         check_fit(fitted, manifest.quantity, at, findings);
     }
+    are_sound
 }
 
 fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findings: &mut Findings) {

@@ -33,6 +33,8 @@ pub struct Document {
 pub struct DocumentRules {
     /// The nesting exceeds the limit.
     pub too_deep: &'static Rule,
+    /// The number of values exceeds the limit; `None` for documents that are short anyway.
+    pub too_large: Option<&'static Rule>,
     /// The text is not JSON.
     pub syntax: &'static Rule,
     /// A key is missing, appears twice or has a value of the wrong type.
@@ -57,21 +59,29 @@ pub struct VersionedJson {
 }
 
 impl Document {
-    /// Parses a JSON text whose nesting depth is at most `max_depth`. If the text is not valid,
-    /// adds a finding that says why, and returns `None`.
+    /// Parses a JSON text whose nesting depth is at most `max_depth`, and which has at most
+    /// `max_nodes` opening brackets and commas. If the text is not valid, adds a finding that says
+    /// why, and returns `None`.
     pub fn open(
         &self,
         bytes: &[u8],
         max_depth: usize,
+        max_nodes: usize,
         findings: &mut Findings,
     ) -> Option<VersionedJson> {
         let (rules, text) = (&self.rules, self.text);
         // Counted on the text, because the parser has a limit of its own and would report another
         // error first.
-        let depth = depth(bytes);
+        let JsonSize { depth, nodes } = JsonSize::of(bytes);
         if depth > max_depth {
             let message = format!("the {text} nests {depth} deep and the limit is {max_depth}");
             findings.add(rules.too_deep, "", message);
+            return None;
+        }
+        if let Some(rule) = rules.too_large.filter(|_| nodes > max_nodes) {
+            let message =
+                format!("the {text} has up to {nodes} values and the limit is {max_nodes}");
+            findings.add(rule, "", message);
             return None;
         }
         let value = self.value(bytes, findings)?;
@@ -148,23 +158,35 @@ impl Document {
     }
 }
 
-/// Returns the nesting depth: the largest number of arrays and objects that contain each other.
-fn depth(mut bytes: &[u8]) -> usize {
-    let (mut open, mut deepest) = (0usize, 0);
-    while let Some((&byte, rest)) = bytes.split_first() {
-        bytes = rest;
-        match byte {
-            b'"' => bytes = after_string(bytes),
-            b'[' | b'{' => {
-                open += 1;
-                deepest = deepest.max(open);
+/// Size of a JSON text, counted without parsing it.
+struct JsonSize {
+    /// Nesting depth: the largest number of arrays and objects that contain each other.
+    depth: usize,
+    /// Number of opening brackets and commas outside strings.
+    nodes: usize,
+}
+
+impl JsonSize {
+    fn of(mut bytes: &[u8]) -> Self {
+        let (mut open, mut size) = (0usize, Self { depth: 0, nodes: 0 });
+        while let Some((&byte, rest)) = bytes.split_first() {
+            bytes = rest;
+            match byte {
+                b'"' => bytes = after_string(bytes),
+                b'[' | b'{' => {
+                    open += 1;
+                    size.depth = size.depth.max(open);
+                    size.nodes += 1;
+                }
+                // The text may not be JSON and close more than it opens. The parser reports that
+                // later.
+                b']' | b'}' => open = open.saturating_sub(1),
+                b',' => size.nodes += 1,
+                _ => {}
             }
-            // The text may not be JSON and close more than it opens. The parser reports that later.
-            b']' | b'}' => open = open.saturating_sub(1),
-            _ => {}
         }
+        size
     }
-    deepest
 }
 
 /// Skips the rest of a string.
@@ -179,15 +201,15 @@ fn after_string(mut bytes: &[u8]) -> &[u8] {
     &[]
 }
 
-/// Parses `MAJOR.MINOR` without signs or leading zeros.
+/// Parses `MAJOR.MINOR`: numbers up to 2^32 - 1 without signs or leading zeros.
 fn numbers(version: &str) -> Option<(u64, u64)> {
     let (major, minor) = version.split_once('.')?;
     Some((number(major)?, number(minor)?))
 }
 
 fn number(text: &str) -> Option<u64> {
-    let number: u64 = text.parse().ok()?;
+    let number: u32 = text.parse().ok()?;
     // `parse` accepts `+1` and `01`. Writing the number again shows whether the text is its only
     // form.
-    (number.to_string() == text).then_some(number)
+    (number.to_string() == text).then_some(number.into())
 }

@@ -22,6 +22,12 @@ pub struct Limits {
     /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses a
     /// depth of more than 100.
     pub json_depth: usize,
+    /// Size of the manifest as JSON: 1,000,000 opening brackets and commas outside strings. A
+    /// manifest has at most one value more than it has opening brackets and commas.
+    pub json_nodes: usize,
+    /// Number of conditions: 10,000. Finding the triangles between them takes a player more than
+    /// proportional time.
+    pub conditions: usize,
     /// Number of values in all parameter blocks and reference spectra together: 1,048,576.
     pub values: usize,
 }
@@ -35,6 +41,8 @@ impl Default for Limits {
             total_bytes: 16 << 20,
             ratio: 200,
             json_depth: 32,
+            json_nodes: 1_000_000,
+            conditions: 10_000,
             values: 1 << 20,
         }
     }

@@ -19,6 +19,7 @@ const DOCUMENT: Document = Document {
     minor: 1,
     rules: DocumentRules {
         too_deep: rule::JSON_TOO_DEEP,
+        too_large: Some(rule::JSON_TOO_LARGE),
         syntax: rule::JSON_SYNTAX,
         wrong_type: rule::JSON_TYPE,
         version_missing: rule::VERSION_MISSING,
@@ -30,7 +31,7 @@ const DOCUMENT: Document = Document {
 
 /// Parses a manifest. If that fails, adds a finding that says why and returns `None`.
 pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Manifest> {
-    let mut opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    let mut opened = DOCUMENT.open(bytes, limits.json_depth, limits.json_nodes, findings)?;
     if let Err((pointer, problem)) = expand_tables(&mut opened.value) {
         let message = format!("{problem}; correct the table or write an array of objects");
         findings.add(rule::JSON_TYPE, pointer, message);
@@ -38,6 +39,12 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
     }
     check_quantity(&opened.value, findings)?;
     let (manifest, unknown) = DOCUMENT.typed::<Manifest>(&opened, findings)?;
+    let (count, most) = (manifest.conditions.len(), limits.conditions);
+    if count > most {
+        let message = format!("there are {count} conditions and the limit is {most}");
+        findings.add(rule::CONDITIONS_TOO_MANY, "/conditions", message);
+        return None;
+    }
     if !opened.newer {
         let other = manifest.other.keys().map(|key| format!("/{}", escape(key)));
         let mut pointers: Vec<String> = other.chain(unknown).collect();

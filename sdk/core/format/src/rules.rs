@@ -104,6 +104,10 @@ htex_base::finding::rule_table! {
         "The manifest nests deeper than the limit.",
         "Deep nesting exhausts a parser's stack.",
         "Flatten the extension, or raise `json_depth` if you trust the file.";
+    JSON_TOO_LARGE Error [MANIFEST]:
+        "The manifest has more values than the limit.",
+        "A value takes far more memory than its bytes in the file.",
+        "Shorten the manifest, or raise `json_nodes` if you trust the file.";
     JSON_TYPE Error [MANIFEST]:
         "A key is missing, appears twice, or has a value of the wrong type.",
         "The manifest does not follow `schemas/manifest-1.json`, or a table of a coded asset stands for no array.",
@@ -118,7 +122,7 @@ htex_base::finding::rule_table! {
         "Add `\"htex\": \"1.0\"`.";
     VERSION_INVALID Error [MANIFEST]:
         "`htex` is not a version.",
-        "It is a string of two whole numbers without leading zeros, `MAJOR.MINOR`.",
+        "It is a string of two whole numbers up to 4294967295 without leading zeros, `MAJOR.MINOR`.",
         "Write `\"htex\": \"1.0\"`.";
     VERSION_UNSUPPORTED Error [MANIFEST]:
         "The reader does not support the asset's major version.",
@@ -172,6 +176,10 @@ htex_base::finding::rule_table! {
         "A recording's file name contains a folder.",
         "Folders have no meaning on other machines, and may reveal who made the asset.",
         "Write only the file name.";
+    CONDITIONS_TOO_MANY Error [MANIFEST]:
+        "There are more conditions than the limit.",
+        "A player finds the triangles between them, which takes more than proportional time.",
+        "Average neighbouring conditions, or raise `conditions` if you trust the file.";
     CONDITIONS_EMPTY Error [CONDITIONS]:
         "There is no exploration condition.",
         "Every representation is fitted at a condition, even if its speed and force are not known.",

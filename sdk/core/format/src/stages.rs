@@ -18,8 +18,10 @@ pub(crate) const HEADERS: Stage = stage(
 );
 pub(crate) const DATA: Stage = stage("the entries' data, unpacked, in the directory's order", true);
 pub(crate) const MIMETYPE: Stage = stage("`mimetype`", false);
-pub(crate) const MANIFEST: Stage =
-    stage("the manifest as JSON, its version and its quantity; the first error only", true);
+pub(crate) const MANIFEST: Stage = stage(
+    "the manifest as JSON, its version, its quantity, its types and the number of conditions; the first error only",
+    true,
+);
 pub(crate) const UNKNOWN_KEYS: Stage = stage("unknown keys, sorted by pointer", false);
 pub(crate) const TEXTURE: Stage =
     stage("the whole texture: its name, licence (one finding), DOI, unit and band", false);

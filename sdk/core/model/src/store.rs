@@ -77,6 +77,7 @@ pub enum Store {
     Packed {
         /// Size of one step: the factor of the stored integer. If `log` is set, it is a step of the
         /// value's natural logarithm.
+        #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
         scale: f64,
         /// Value for the stored integer 0. If `log` is set, it is that value's natural logarithm.
         offset: f64,

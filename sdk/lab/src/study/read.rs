@@ -27,6 +27,8 @@ const DOCUMENT: Document = Document {
     minor: 0,
     rules: DocumentRules {
         too_deep: rule::STUDY_TOO_DEEP,
+        // A study has few bytes, see `MOST_BYTES`.
+        too_large: None,
         syntax: rule::STUDY_SYNTAX,
         wrong_type: rule::STUDY_TYPE,
         version_missing: rule::STUDY_VERSION_MISSING,
@@ -52,7 +54,7 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
     }
     // Converted to JSON, so that the same code checks studies and scenes.
     let json = serde_json::to_vec(&value).ok()?;
-    let opened = DOCUMENT.open(&json, MOST_DEPTH, findings)?;
+    let opened = DOCUMENT.open(&json, MOST_DEPTH, usize::MAX, findings)?;
     if opened.newer {
         return None;
     }

@@ -18,6 +18,8 @@ const DOCUMENT: Document = Document {
     minor: 0,
     rules: DocumentRules {
         too_deep: rule::SCENE_JSON_TOO_DEEP,
+        // A scene has at most a megabyte.
+        too_large: None,
         syntax: rule::SCENE_JSON_SYNTAX,
         wrong_type: rule::SCENE_JSON_TYPE,
         version_missing: rule::SCENE_VERSION_MISSING,
@@ -36,7 +38,7 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
         findings.add(rule::SCENE_FILE_TOO_LARGE, "", message);
         return None;
     }
-    let mut opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    let mut opened = DOCUMENT.open(bytes, limits.json_depth, usize::MAX, findings)?;
     if opened.newer {
         remove_unknown_effects(&mut opened.value);
     } else {

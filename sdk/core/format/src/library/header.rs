@@ -161,6 +161,22 @@ impl Header {
     }
 }
 
+/// Returns the note that a library has a newer minor version than this program supports. Returns
+/// `None` for other libraries.
+pub(crate) fn newer_note(minor: u16) -> Option<Fault> {
+    let message = format!(
+        "the library has version {MAJOR}.{minor} and this program supports {MAJOR}.{MINOR}; what is new is ignored"
+    );
+    (minor > MINOR).then(|| Fault::new(rule::LIBRARY_VERSION_NEWER, PLACE, message))
+}
+
+/// Returns the note of [`newer_note`] for the first bytes of a file, which need be no valid header.
+pub(crate) fn newer_note_of(start: &[u8]) -> Option<Fault> {
+    let bytes = start.first_chunk::<HEADER_BYTES>()?;
+    let is_library = bytes.starts_with(&MAGIC) && check_version(bytes).is_ok();
+    is_library.then(|| newer_note(u16_at(bytes, 10))).flatten()
+}
+
 fn check_version(bytes: &[u8; HEADER_BYTES]) -> Result<(), Fault> {
     let (major, minor) = (u16_at(bytes, 8), u16_at(bytes, 10));
     if major == MAJOR {

@@ -9,7 +9,7 @@ use crate::library::coarse_spectrum::CoarseSpectrum;
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::fault::{Fault, leaf_place, spectra_place};
-use crate::library::header::{Header, MAJOR, MINOR};
+use crate::library::header::{Header, newer_note};
 use crate::library::leaf::LeafReader;
 use crate::library::limits::Limits;
 use crate::library::metadata::LibraryMetadata;
@@ -83,12 +83,8 @@ impl Index {
     /// Returns all findings that are not errors, such as a newer minor version.
     pub fn notes(&self) -> Vec<Finding> {
         let mut findings = Findings::default();
-        if self.header.minor > MINOR {
-            let message = format!(
-                "the library has version {MAJOR}.{} and this program supports {MAJOR}.{MINOR}; what is new is ignored",
-                self.header.minor
-            );
-            findings.add(rule::LIBRARY_VERSION_NEWER, "/header", message);
+        if let Some(note) = newer_note(self.header.minor) {
+            note.add_to(&mut findings);
         }
         findings.into_list()
     }

@@ -3,9 +3,11 @@
 
 use std::ops::Range;
 
+use htex_base::finding::Findings;
+
 use crate::library::error::LibraryError;
 use crate::library::fault::Fault;
-use crate::library::header::{HEADER_BYTES, Header};
+use crate::library::header::{HEADER_BYTES, Header, newer_note_of};
 use crate::library::index::Index;
 use crate::library::limits::Limits;
 use crate::library::page;
@@ -42,6 +44,7 @@ pub struct Opening {
     /// The bytes from the start of the file that the caller has given so far.
     start: Vec<u8>,
     header: Option<Header>,
+    index: Option<Index>,
 }
 
 /// Result of [`Opening::give`].
@@ -56,7 +59,7 @@ pub enum Progress {
 impl Opening {
     /// Starts opening a library.
     pub fn new(limits: Limits) -> Self {
-        Self { limits, start: Vec::new(), header: None }
+        Self { limits, start: Vec::new(), header: None, index: None }
     }
 
     /// Returns which bytes of the file are needed next. The returned range may end after the end of
@@ -75,6 +78,21 @@ impl Opening {
     /// # Errors
     /// [`LibraryError::Invalid`] if the header or the root page breaks a rule.
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
+        self.take(bytes, file_bytes).map_err(|fault| {
+            // A newer minor version is told first, since it may be the reason of the fault.
+            let mut findings = Findings::default();
+            let note = newer_note_of(&self.start);
+            note.into_iter().chain([fault]).for_each(|fault| fault.add_to(&mut findings));
+            LibraryError::Invalid { findings: findings.into_list() }
+        })?;
+        Ok(match self.index.take() {
+            Some(index) => Progress::Open(index),
+            None => Progress::More(self),
+        })
+    }
+
+    /// Takes bytes. Sets the index once the root page is complete.
+    fn take(&mut self, bytes: &[u8], file_bytes: u64) -> Result<(), Fault> {
         let wanted = self.wanted();
         let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
         // A server without ranges may send the whole file, so what was not wanted is dropped.
@@ -86,13 +104,14 @@ impl Opening {
         let is_complete = self.start.len() as u64 >= header.root.end;
         if !is_complete && self.start.len() as u64 == wanted.start {
             let message = format!("no bytes follow byte {}; get it again", wanted.start);
-            return Err(Fault::new(rule::LIBRARY_TRUNCATED, "", message).into());
+            return Err(Fault::new(rule::LIBRARY_TRUNCATED, "", message));
         }
         if is_complete {
-            return Ok(Progress::Open(self.read_root(header)?));
+            self.index = Some(self.read_root(header)?);
+        } else {
+            self.header = Some(header);
         }
-        self.header = Some(header);
-        Ok(Progress::More(self))
+        Ok(())
     }
 
     fn read_header(&self, file_bytes: u64) -> Result<Header, Fault> {

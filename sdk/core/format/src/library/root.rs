@@ -134,6 +134,10 @@ fn metadata(cursor: &mut Cursor<'_>) -> Result<LibraryMetadata, Fault> {
     let json = cursor.read_bytes(length).map_err(malformed)?;
     // By the reader of manifests, so that modules for the web have only one.
     let read = crate::parse_json(json).map_err(|error| error.to_string()).and_then(|value| {
+        // A derived type would also be read from an array of its values.
+        if !value.is_object() {
+            return Err("it is not an object".to_owned());
+        }
         serde_json::from_value::<LibraryMetadata>(value).map_err(|error| error.to_string())
     });
     read.and_then(|metadata| metadata.check().map(|()| metadata)).map_err(|problem| {

@@ -10,7 +10,7 @@ use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::facts::Facts;
 use crate::library::fault::{entry_place, spectra_place};
-use crate::library::header::MINOR;
+use crate::library::header::{MINOR, newer_note};
 use crate::library::index::{assembled, changed};
 use crate::library::leaf::length;
 use crate::library::limits::Limits;
@@ -45,10 +45,11 @@ pub fn validate_source(
         Err(error) => return Err(error),
     };
     let mut validation = Validation::new(&library, limits);
+    if let Some(note) = newer_note(library.index().header().minor) {
+        note.add_to(&mut validation.findings);
+    }
     validation.run()?;
-    let mut findings = library.notes();
-    findings.extend(validation.findings.into_list());
-    Ok(Report::new(findings))
+    Ok(Report::new(validation.findings.into_list()))
 }
 
 /// State of a validation.

@@ -32,6 +32,11 @@ fn each_limit_bites_where_it_says() {
     bites("ARCHIVE_TOO_LARGE", total, |n| Limits { total_bytes: n as u64, ..default });
     // {, representations, {, at, {, quality, band_error_db
     bites("JSON_TOO_DEEP", 7, |n| Limits { json_depth: n, ..default });
+    let text = serde_json::to_string(&asset.manifest.rounded()).unwrap();
+    // No text of this manifest has a bracket, and two have a comma.
+    let nodes = text.matches(['[', '{', ',']).count() - 2;
+    bites("JSON_TOO_LARGE", nodes, |n| Limits { json_nodes: n, ..default });
+    bites("CONDITIONS_TOO_MANY", 1, |n| Limits { conditions: n, ..default });
     bites("VALUES_TOO_MANY", 7 + 12 + 21 + 2 + 3, |n| Limits { values: n, ..default });
     // 5 kB of manifest in less than 1 kB.
     let least = (1..)

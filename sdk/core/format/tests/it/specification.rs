@@ -44,6 +44,8 @@ fn the_text_names_every_limit_and_its_default() {
         ("total_bytes", limits.total_bytes),
         ("ratio", limits.ratio),
         ("json_depth", limits.json_depth as u64),
+        ("json_nodes", limits.json_nodes as u64),
+        ("conditions", limits.conditions as u64),
         ("values", limits.values as u64),
     ];
     for (name, value) in rows {
@@ -65,14 +67,46 @@ fn licences_have_the_grammar_of_the_text() {
         "DocumentRef-a:LicenseRef-b OR MIT with DocumentRef-a:AdditionRef-b",
     ];
     assert!(valid.iter().all(|license| code(license).is_none()));
-    for unlisted in ["mit", "Foo-1.0", "MIT OR Foo-1.0 OR Bar", "MIT WITH Foo"] {
+    let unlisted = [
+        "mit",
+        "Foo-1.0",
+        "MIT OR Foo-1.0 OR Bar",
+        "MIT WITH Foo",
+        // Neither is a licence, and each of the lists has ids of its own.
+        "NONE",
+        "NOASSERTION",
+        "MIT WITH 0BSD",
+        "Classpath-exception-2.0",
+    ];
+    for unlisted in unlisted {
         assert_eq!(code(unlisted), Some("LICENSE_UNKNOWN"), "{unlisted}");
     }
-    for invalid in
-        ["", "MIT And 0BSD", "Apache-2.0 +", "GPL-2.0+", "Foo-1.0+", "a_b", "MIT Foo", "AND"]
-    {
+    let invalid = [
+        "",
+        "MIT And 0BSD",
+        "Apache-2.0 +",
+        "Apache-2.0+OR MIT",
+        "GPL-2.0+",
+        "Foo-1.0+",
+        "a_b",
+        "a:b",
+        "MIT Foo",
+        "MIT\u{a0}OR 0BSD",
+        "AND",
+        "LicenseRef-",
+        "LicenseRef-a:b",
+        "DocumentRef-a",
+        "DocumentRef-a:MIT",
+        "DocumentRef-:LicenseRef-b",
+        "AdditionRef-a",
+        "MIT WITH LicenseRef-a",
+        "MIT WITH AdditionRef-",
+    ];
+    for invalid in invalid {
         assert_eq!(code(invalid), Some("LICENSE_INVALID"), "{invalid}");
     }
+    // The white space of ASCII, from U+0009 to U+000D and U+0020.
+    assert_eq!(code("\u{b}MIT\tOR\u{c}0BSD\r\n"), None);
 }
 
 /// 2^53 and the number above it, written with digits only and with a point.

@@ -2,8 +2,10 @@
 //! the values that players should read from them.
 
 mod parameters;
+mod rules;
 
 use htex::Texture;
+use htex::play::exploration::{CEILING, slides};
 use htex_author::stored_fields;
 use htex_dsp::grid::Band;
 use htex_host::{LoadedModel, Registry};
@@ -185,12 +187,31 @@ pub fn files() -> Vec<File> {
     let mut files: Vec<File> = registry.models().iter().map(descriptor).collect();
     for (number, plan) in PLANS.iter().enumerate() {
         let bytes = asset(&registry, number, plan);
-        let numbers = numbers(plan, &Texture::from_bytes(&bytes).unwrap());
-        let path = |ending: &str| format!("{CASES}/{}.{ending}", plan.name);
-        files.push((path("htex"), bytes));
-        files.push((path("json"), numbers.into_bytes()));
+        let texture = Texture::from_bytes(&bytes).unwrap();
+        let given = plan.conditions.iter().chain(plan.motions);
+        let given = given.filter(|motion| slides(motion[0], motion[1])).copied().map(Some);
+        let motions: Vec<_> = given.chain(plan.levels.map(|_| None)).collect();
+        let mut frequency_hz = texture.band().grid_hz();
+        frequency_hz.extend(BESIDE_HZ);
+        files.extend(pair(plan.name, bytes, &motions, &frequency_hz));
+    }
+    for small in rules::small() {
+        let bytes = small.bytes(&registry);
+        files.extend(pair(small.name, bytes, &small.motions, &rules::FEW_HZ));
     }
     files
+}
+
+/// An asset's file, and the file of the values read from it.
+fn pair(
+    name: &str,
+    bytes: Vec<u8>,
+    motions: &[Option<[f64; 2]>],
+    frequency_hz: &[f64],
+) -> [File; 2] {
+    let numbers = numbers(name, &Texture::from_bytes(&bytes).unwrap(), motions, frequency_hz);
+    let path = |ending: &str| format!("{CASES}/{name}.{ending}");
+    [(path("htex"), bytes), (path("json"), numbers.into_bytes())]
 }
 
 /// A model's descriptor in the form that crosses the ABI, and its path.
@@ -256,53 +277,59 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// The values read from an asset, one line of JSON per case.
-fn numbers(plan: &Plan, asset: &Texture) -> String {
-    let mut frequency_hz = asset.band().grid_hz();
-    frequency_hz.extend(BESIDE_HZ);
+/// The values read from an asset, one line of JSON per case. The motions are a speed and a force;
+/// `None` is no motion.
+fn numbers(
+    name: &str,
+    asset: &Texture,
+    motions: &[Option<[f64; 2]>],
+    frequency_hz: &[f64],
+) -> String {
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
-        let playable = asset.representation(&representation.model[..]).unwrap();
-        let given = plan
-            .conditions
-            .iter()
-            .chain(plan.motions)
-            .filter(|motion| htex::play::exploration::slides(motion[0], motion[1]))
-            .map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
-        for motion in given.chain(plan.levels.map(|_| None)) {
-            let (parameters, _) = playable.parameters(motion).unwrap();
-            let follows = playable.model().unwrap().follows_motion();
-            let factor = match motion {
-                Some(motion) if !follows => {
-                    let conditions = playable.conditions().unwrap();
-                    let ceiling = htex::play::exploration::CEILING;
-                    conditions.scaling(motion, ceiling).frequency
-                }
-                _ => 1.0,
-            };
-            let level_rms = playable.level_rms(motion).unwrap();
-            let magnitude = playable.magnitude(motion, &frequency_hz);
-            let mut case = json!({
-                "model": representation.model,
-                "parameters": parameters,
-                "frequency_factor": factor,
-                "level_rms": level_rms,
-                "magnitude": rounded(&magnitude.unwrap()),
-            });
-            if let Some(motion) = motion {
-                case["speed_mm_s"] = motion.speed_mm_s.into();
-                case["force_n"] = motion.force_n.into();
+        let model = &representation.model;
+        for motion in motions {
+            let read = values(asset, model, *motion, frequency_hz);
+            let mut case = read.unwrap_or_else(|_| json!({ "refused": true }));
+            case["model"] = model[..].into();
+            if let Some([speed, force]) = motion {
+                case["speed_mm_s"] = (*speed).into();
+                case["force_n"] = (*force).into();
             }
             cases.push(case);
         }
     }
     let cases: Vec<String> = cases.iter().map(Value::to_string).collect();
     format!(
-        "{{\"asset\":\"{}.htex\",\n\"frequency_hz\":{},\n\"cases\":[\n{}\n]}}\n",
-        plan.name,
+        "{{\"asset\":\"{name}.htex\",\n\"frequency_hz\":{},\n\"cases\":[\n{}\n]}}\n",
         json!(frequency_hz),
         cases.join(",\n")
     )
+}
+
+/// The values read from a representation at a motion.
+fn values(
+    asset: &Texture,
+    model: &str,
+    motion: Option<[f64; 2]>,
+    frequency_hz: &[f64],
+) -> Result<Value, htex::Error> {
+    let playable = asset.representation(model)?;
+    // The direction of a motion has no effect.
+    let motion = motion.map(|[speed, force]| htex::Motion::new(speed, force).without_direction());
+    let (parameters, _) = playable.parameters(motion)?;
+    let factor = match motion {
+        Some(motion) if !playable.model()?.follows_motion() => {
+            playable.conditions()?.scaling(motion, CEILING).frequency
+        }
+        _ => 1.0,
+    };
+    Ok(json!({
+        "parameters": parameters,
+        "frequency_factor": factor,
+        "level_rms": playable.level_rms(motion)?,
+        "magnitude": rounded(&playable.magnitude(motion, frequency_hz)?),
+    }))
 }
 
 /// Rounded to twelve digits, more than players must match.

@@ -125,7 +125,7 @@ impl TruncateFront for Vec<Entry> {
 
 /// Returns the entry with its data as a deflate stream that has one stored block (RFC 1951, section
 /// 3.2.4).
-fn deflated(entry: &Entry) -> Entry {
+pub(super) fn deflated(entry: &Entry) -> Entry {
     let length = entry.data.len() as u16;
     let mut data = vec![1];
     data.extend(length.to_le_bytes());

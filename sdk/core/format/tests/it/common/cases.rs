@@ -7,6 +7,7 @@ use htex_host::Registry;
 use serde_json::json;
 
 use super::archive_cases::{archives, entries};
+use super::edge_cases::{self, edges};
 use super::manifest_cases::manifests;
 use super::plugin_cases::plugins;
 use super::text_cases::texts;
@@ -25,7 +26,12 @@ impl Case {
     /// Returns the report of a reader that has the models of the specification.
     pub fn report(&self) -> Report {
         let models = Registry::builtin();
-        let known = |r: &Representation| models.find(&r.model).ok().map(|m| m.descriptor());
+        // A model of another major version is another model.
+        let major = |version: &str| semver::Version::parse(version).ok().map(|v| v.major);
+        let known = |r: &Representation| {
+            let model = models.find(&r.model).ok()?.descriptor();
+            (major(&r.model_version) == major(&model.version)).then_some(model)
+        };
         validate_with(&self.bytes, &self.limits, &known)
     }
 
@@ -49,6 +55,8 @@ fn overrides(limits: &Limits) -> BTreeMap<String, u64> {
             ("total_bytes", l.total_bytes),
             ("ratio", l.ratio),
             ("json_depth", l.json_depth as u64),
+            ("json_nodes", l.json_nodes as u64),
+            ("conditions", l.conditions as u64),
             ("values", l.values as u64),
         ]
     };
@@ -67,9 +75,12 @@ pub fn cases() -> Vec<Case> {
         .chain(texts())
         .chain(manifests())
         .chain(plugins())
-        .chain(triangles());
+        .chain(triangles())
+        .chain(edges());
     all.extend(broken.map(|(n, b)| case(n, b)));
     all.extend(limited());
+    let edges = edge_cases::limited().into_iter();
+    all.extend(edges.map(|(name, bytes, limits)| Case { limits, ..case(name, bytes) }));
     all
 }
 

@@ -2,6 +2,7 @@
 
 mod archive_cases;
 pub mod cases;
+mod edge_cases;
 mod manifest_cases;
 pub mod parts;
 mod plugin_cases;

@@ -48,6 +48,11 @@ pub(super) fn with_packed(block: &[u8]) -> Vec<u8> {
 /// A coded asset of version 1.1 with two conditions, whose parameter block is one coded list. The
 /// conditions are a table.
 pub(super) fn with_coded(block: &[u8], change: impl Fn(&mut Value)) -> Vec<u8> {
+    archive(&parts(coded_manifest(change).to_string().as_bytes(), block))
+}
+
+/// The manifest of such an asset.
+pub(super) fn coded_manifest(change: impl Fn(&mut Value)) -> Value {
     let mut manifest = manifest();
     manifest["htex"] = json!("1.1");
     manifest["extensions_required"] = json!(["org.htex.coded/1"]);
@@ -58,7 +63,7 @@ pub(super) fn with_coded(block: &[u8], change: impl Fn(&mut Value)) -> Vec<u8> {
         json!([{ "name": "steps", "list": true, "store": { "coded": { "scale": 1 } } }]);
     representation["at"] = json!({ "columns": { "level_rms": [0.01, 0.02] } });
     change(&mut manifest);
-    archive(&parts(manifest.to_string().as_bytes(), block))
+    manifest
 }
 
 pub(super) fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {

@@ -5,6 +5,10 @@
 pub struct Header {
     pub name: Vec<u8>,
     pub flags: u16,
+    /// Minutes of the time, of midnight.
+    pub minutes: u16,
+    /// Number of the disk, which only the directory has.
+    pub disk: u16,
     pub method: u16,
     pub crc: u32,
     pub packed: u32,
@@ -73,7 +77,8 @@ fn central(directory: &mut Vec<u8>, entry: &Header, local_at: u32) {
     put(directory, 10, 2);
     header(directory, entry);
     put(directory, entry.comment.len() as u32, 2);
-    put(directory, 0, 4);
+    put(directory, entry.disk.into(), 2);
+    put(directory, 0, 2);
     put(directory, 0, 4);
     put(directory, local_at, 4);
     for part in [&entry.name, &entry.extra, &entry.comment] {
@@ -84,8 +89,8 @@ fn central(directory: &mut Vec<u8>, entry: &Header, local_at: u32) {
 fn header(out: &mut Vec<u8>, entry: &Header) {
     put(out, entry.flags.into(), 2);
     put(out, entry.method.into(), 2);
-    // 1980-01-01, midnight.
-    put(out, 0x0021_0000, 4);
+    // 1980-01-01.
+    put(out, 0x0021_0000 | u32::from(entry.minutes) << 5, 4);
     put(out, entry.crc, 4);
     put(out, entry.packed, 4);
     put(out, entry.size, 4);

@@ -54,6 +54,71 @@ pub(super) fn triangles() -> Vec<Named> {
             "triangles_invalid_twice_around",
             of(&STAR, &[[5, 0, 2], [5, 2, 4], [5, 4, 1], [5, 1, 3], [5, 3, 0]]),
         ),
+        // Of triangles between such conditions only the corners are checked, and that speeds and
+        // forces are known.
+        (
+            "condition_duplicate_with_triangles",
+            changed(&RECTANGLE, &FLIPPED, |manifest| {
+                manifest["conditions"][4] = manifest["conditions"][0].clone();
+            }),
+        ),
+        (
+            "condition_index_duplicate_with_triangles",
+            changed(&RECTANGLE, &FLIPPED, |manifest| {
+                manifest["representations"][0]["at"][4]["condition"] = json!(0);
+            }),
+        ),
+        (
+            "condition_index_invalid_with_triangles",
+            changed(&RECTANGLE, &FLIPPED, |manifest| {
+                manifest["representations"][0]["at"][4]["condition"] = json!(9);
+            }),
+        ),
+        (
+            "triangles_invalid_unknown_and_index",
+            changed(&RECTANGLE, &FLIPPED, |manifest| {
+                manifest["representations"][0]["at"][0]["condition"] = json!(9);
+                manifest["conditions"][2].as_object_mut().unwrap().remove("force_n");
+            }),
+        ),
+        // Another representation's index has no effect.
+        (
+            "triangles_invalid_second",
+            changed(&RECTANGLE, &[[0, 3, 4], [1, 2, 3]], |manifest| {
+                let mut first = manifest["representations"][0].clone();
+                first["model"] = json!("org.example.first");
+                first["at"][4]["condition"] = json!(9);
+                first["parameters"] = json!("absent.bin");
+                manifest["representations"].as_array_mut().unwrap().insert(0, first);
+            }),
+        ),
+        (
+            "triangles_invalid_corner_and_unknown",
+            changed(&RECTANGLE, &[[0, 3, 4], [4, 1, 5], [1, 2, 3]], |manifest| {
+                manifest["conditions"][2].as_object_mut().unwrap().remove("force_n");
+            }),
+        ),
+        (
+            "triangles_invalid_two_equal_and_unknown",
+            changed(&RECTANGLE, &[[0, 3, 4], [4, 1, 3], [1, 2, 1]], |manifest| {
+                manifest["conditions"][2].as_object_mut().unwrap().remove("force_n");
+            }),
+        ),
+        // Twice the area is 4.7e-10 of the square of the longest side, of scaled positions.
+        (
+            "triangles_invalid_flat_scaled",
+            of(
+                &[[100.0, 0.4], [100.0 + 5e-8, 0.8], [100.0, 1.2], [160.0, 0.8]],
+                &[[0, 1, 2], [0, 1, 3], [1, 2, 3]],
+            ),
+        ),
+        (
+            "triangles_invalid_touching",
+            of(
+                &[[100.0, 0.8], [40.0, 0.4], [40.0, 1.2], [160.0, 0.4], [160.0, 1.2]],
+                &[[0, 1, 2], [0, 3, 4]],
+            ),
+        ),
         (
             "condition_invalid_with_triangles",
             changed(&RECTANGLE, &FLIPPED, |manifest| {
@@ -66,6 +131,21 @@ pub(super) fn triangles() -> Vec<Named> {
 /// An asset that stores triangles between conditions.
 pub(super) fn with_triangles(conditions: &[[f64; 2]], triangles: &[[usize; 3]]) -> Vec<u8> {
     changed(conditions, triangles, |_| ())
+}
+
+/// An asset with triangles that are next to flat.
+pub(super) fn narrow() -> Vec<u8> {
+    with_triangles(
+        &[[100.0, 0.4], [100.0 + 5e-5, 0.8], [100.0, 1.2], [160.0, 0.8]],
+        &[[0, 1, 2], [0, 1, 3], [1, 2, 3]],
+    )
+}
+
+/// An asset with an empty list of triangles, which is none.
+pub(super) fn without() -> Vec<u8> {
+    changed(&RECTANGLE, &[], |manifest| {
+        manifest["conditions"][2].as_object_mut().unwrap().remove("force_n");
+    })
 }
 
 fn changed(

@@ -6,6 +6,7 @@ use htex_base::finding::{FileReport, Report};
 use htex_format::library::{Limits, validate_source};
 use serde_json::json;
 
+use super::edges;
 use super::raw::{Raw, crc32};
 use super::{Texture, four_described, module, pack, pack_bytes, texture};
 
@@ -54,14 +55,16 @@ pub fn limits(limits: &Limits) -> [(&'static str, u64); 7] {
 
 /// All conformance files.
 pub fn cases() -> Vec<Case> {
-    let named = valid().into_iter().chain(files()).chain(pages()).chain(entries());
+    let named =
+        valid().into_iter().chain(files()).chain(pages()).chain(entries()).chain(edges::edges());
     let mut cases: Vec<Case> =
         named.map(|(name, bytes)| case(name, bytes, Limits::default())).collect();
-    cases.extend(limited());
+    let limits = limited().into_iter();
+    cases.extend(limits.chain(edges::limited().into_iter().map(|(n, b, l)| case(n, b, l))));
     cases
 }
 
-type Named = (&'static str, Vec<u8>);
+pub type Named = (&'static str, Vec<u8>);
 
 fn case(name: &str, bytes: Vec<u8>, limits: Limits) -> Case {
     Case { name: name.to_owned(), bytes, limits }

@@ -1,6 +1,7 @@
 //! Textures and libraries for tests.
 
 pub mod cases;
+mod edges;
 pub mod raw;
 
 use htex_format::library::{

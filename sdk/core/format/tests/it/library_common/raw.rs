@@ -29,6 +29,8 @@ pub struct Raw {
     pub replaced: Vec<(usize, Vec<u8>)>,
     /// Changes to deflate streams, with the same numbering.
     pub streams: Vec<(usize, Change)>,
+    /// Whether pages are deflated, and not only stored in a stream.
+    pub is_deflated: bool,
     /// A change to the header before its checksum is computed.
     pub header: Option<Change>,
 }
@@ -248,7 +250,7 @@ impl Raw {
         for (_, change) in self.pages.iter().filter(|(i, _)| *i == number) {
             change(&mut page);
         }
-        let mut stream = stored(&page);
+        let mut stream = if self.is_deflated { deflated(&page) } else { stored(&page) };
         for (_, change) in self.streams.iter().filter(|(i, _)| *i == number) {
             change(&mut stream);
         }
@@ -292,6 +294,13 @@ fn following(page: &mut Vec<u8>, before: &[u8], now: &[u8]) {
     }
     varint(page, shared as u64);
     text(page, &now[shared..]);
+}
+
+fn deflated(data: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut stream = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+    stream.write_all(data).unwrap();
+    stream.finish().unwrap()
 }
 
 /// A deflate stream of stored blocks (RFC 1951, section 3.2.4).

@@ -24,9 +24,8 @@ use Step::{Render, SetMotion};
 
 /// The files of all cases: their paths from the workspace's folder, and their bytes.
 pub fn files() -> Vec<(String, Vec<u8>)> {
-    let valid = sound().into_iter().map(|(name, plan)| {
-        let bytes = plan.bytes();
-        let case = played(name, &bytes, &steps(plan.rate_hz));
+    let valid = all_sound().into_iter().map(|(name, bytes, steps)| {
+        let case = played(name, &bytes, &steps);
         (name, bytes, case)
     });
     let refused = hostile().into_iter().map(|(name, bytes)| {
@@ -42,7 +41,7 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
 
 /// Returns all blocks, including the invalid blocks, and the calls to make with each block.
 pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
-    let played = sound().into_iter().map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
+    let played = all_sound().into_iter().map(|(_, bytes, steps)| (bytes, steps));
     let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
     played.chain(refused).collect()
 }
@@ -328,6 +327,114 @@ fn sound() -> Vec<(&'static str, Plan)> {
     ]
 }
 
+/// A block that a player accepts, with its name and the calls to make with it.
+type Sound = (&'static str, Vec<u8>, Vec<Step>);
+
+fn all_sound() -> Vec<Sound> {
+    let with_steps = |(name, plan): (&'static str, Plan)| (name, plan.bytes(), steps(plan.rate_hz));
+    sound().into_iter().map(with_steps).chain(edges()).collect()
+}
+
+/// Each motion, and samples after it.
+fn motions(all: &[[f32; 2]]) -> Vec<Step> {
+    all.iter().flat_map(|[speed, force]| [SetMotion(*speed, *force), Render(24)]).collect()
+}
+
+/// Blocks and motions at the edges of rules. Each of them tells apart players that
+/// `tests/peers/mutants` lists.
+fn edges() -> Vec<Sound> {
+    let one = |plan: Plan| Plan {
+        glide: 8,
+        up: 1,
+        row: 0,
+        rows: vec![],
+        speeds: vec![80.0],
+        forces: vec![0.4],
+        levels: vec![1.0],
+        ..plan
+    };
+    let tone = |numbers: &[f32]| Plan {
+        size: numbers.len() as u16 / 2,
+        numbers: numbers.to_vec(),
+        ..one(tones())
+    };
+    let mut longer = noise_one_condition().bytes();
+    longer.extend(b"more");
+    // The least energy that is heard is above 0x3089705F, which the second has exactly: the first
+    // is below it, the third above it.
+    let quiet = |a: f32, b: f32| [0.05, a, 0.1, b];
+    let [a, b] = [0x382e_c69a, 0x3788_33e5].map(f32::from_bits);
+    let quiet = [quiet(1e-5, 0.0), quiet(a, b), quiet(1e-4, 0.0)].concat();
+    vec![
+        ("noise_with_bytes_after", longer, motions(&[[80.0, 0.4], [160.0, 0.8]])),
+        // The last motions at which a finger is felt, and the first at which it is not. A motion
+        // sounds again after silence.
+        (
+            "tones_contact",
+            tone(&[0.05, 1.0, 0.1, 0.5]).bytes(),
+            motions(&[
+                [80.0, 0.5],
+                [80.0, 0.0],
+                [80.0, 0.5],
+                [0.499_999_97, 0.5],
+                [0.5, 0.5],
+                [80.0, -0.0],
+                [1000.0, 0.5],
+                [1000.0001, 0.4],
+                [80.0, 20.0],
+                [90.0, 20.000_002],
+                [70.0, 1e-30],
+            ]),
+        ),
+        // Ratios of forces, and a force that is below 1e-6 and the nearest f32 to it.
+        (
+            "tones_least_force",
+            Plan { forces: vec![1e-6], law: [0.0, 0.5, -0.25], ..tone(&[0.05, 1.0]) }.bytes(),
+            motions(&[[80.0, 1e-3], [80.0, 20.0], [80.0, 1.1], [80.0, 0.9]]),
+        ),
+        (
+            "tones_small_forces",
+            Plan { law: [0.0, 0.0, 0.75], ..tone(&[0.05, 1.0]) }.bytes(),
+            motions(&[[80.0, 1e-5], [80.0, 3e-7], [80.0, 1e-7], [80.0, 1e-9]]),
+        ),
+        // The logarithm at the number from which its argument is halved, and halves of the power.
+        (
+            "tones_logarithm",
+            Plan { law: [1.0, 2.0, 0.5], ceiling: 64.0, ..tone(&[0.01, 1.0]) }.bytes(),
+            motions(&[
+                [f32::from_bits(0x42e2_4630), 0.4],
+                [f32::from_bits(0x42e2_462e), 0.4],
+                [f32::from_bits(0x42e2_462d), 0.4],
+                [80.0, 0.2],
+                [80.0, 0.05],
+                [80.0, 0.8],
+            ]),
+        ),
+        // Frequencies that are raised by more than 8, and by as much as P allows.
+        (
+            "tones_raised",
+            Plan { law: [4.0, 0.0, 0.0], ..tone(&[0.001, 1.0, 0.45, 0.0]) }.bytes(),
+            motions(&[[160.0, 0.4], [640.0, 0.4], [60.0, 0.4]]),
+        ),
+        (
+            "tones_above_highest",
+            Plan { law: [1.0, 0.0, 0.0], highest: 0.1, ..tone(&[0.2, 1.0, 0.4, 0.5]) }.bytes(),
+            motions(&[[80.0, 0.4], [160.0, 0.4], [40.0, 0.4]]),
+        ),
+        (
+            "tones_quiet",
+            Plan {
+                speeds: vec![40.0, 80.0, 160.0],
+                levels: vec![1.0; 3],
+                numbers: quiet,
+                ..tone(&[0.0; 4])
+            }
+            .bytes(),
+            motions(&[[80.0, 0.4], [160.0, 0.4], [40.0, 0.4]]),
+        ),
+    ]
+}
+
 /// Blocks that a player refuses.
 fn hostile() -> Vec<(&'static str, Vec<u8>)> {
     let noise_with = |change: fn(&mut Plan)| {
@@ -387,6 +494,39 @@ fn hostile() -> Vec<(&'static str, Vec<u8>)> {
         ("refused_frequency", tones_with(|p| p.numbers[0] = 0.6)),
         ("refused_amplitude", tones_with(|p| p.numbers[1] = 65.0)),
         ("refused_padding", padded()),
+        ("refused_rate_below", noise_with(|p| p.rate_hz = 99.0)),
+        ("refused_rate_above", noise_with(|p| p.rate_hz = 1.5e6)),
+        ("refused_row_above", noise_with(|p| p.row = 68)),
+        ("refused_no_row", noise_with(|p| p.row = 0)),
+        ("refused_size_above", noise_with(|p| p.size = 324)),
+        ("refused_tones_above", tones_with(|p| p.size = 65)),
+        ("refused_no_tones", tones_with(|p| p.size = 0)),
+        ("refused_glide_above", noise_with(|p| p.glide = 4097)),
+        ("refused_speeds_above", noise_with(|p| p.speeds = vec![1.0; 33])),
+        ("refused_forces_above", noise_with(|p| p.forces = vec![1.0; 33])),
+        ("refused_filters_above", noise_with(|p| p.filters = 65)),
+        ("refused_quantity_below", noise_with(|p| p.quantity = 0)),
+        ("refused_exponent_above", noise_with(|p| p.law[0] = 4.5)),
+        ("refused_ceiling_below", noise_with(|p| p.ceiling = -1.0)),
+        ("refused_ceiling_above", noise_with(|p| p.ceiling = 1e11)),
+        ("refused_full_scale_above", noise_with(|p| p.full_scale = 1e11)),
+        ("refused_highest_below", noise_with(|p| p.highest = -0.5)),
+        ("refused_speed_below", noise_with(|p| p.speeds[0] = 0.25)),
+        ("refused_force_above", noise_with(|p| p.forces[0] = 20.5)),
+        ("refused_interpolator_above", noise_with(|p| p.rows[0] = 65.0)),
+        ("refused_level_above", noise_with(|p| p.levels[0] = 2e9)),
+        ("refused_scale_below", noise_with(|p| p.numbers[0] = -1e-10)),
+        ("refused_frequency_below", tones_with(|p| p.numbers[0] = -0.1)),
+        ("refused_amplitude_below", tones_with(|p| p.numbers[1] = -65.0)),
+        (
+            "refused_fluctuation_offset_below",
+            noise_with(|p| (p.flags, p.fluctuation.2) = (2, -16.5)),
+        ),
+        // The first rule that is broken counts.
+        (
+            "refused_speeds_and_level",
+            noise_with(|p| (p.speeds, p.levels[0]) = (vec![80.0, 80.0], -1.0)),
+        ),
         ("refused_fluctuation_flag", noise_with(|p| p.flags = 4)),
         ("refused_fluctuation_period", noise_with(|p| (p.flags, p.fluctuation.0) = (2, 0))),
         ("refused_fluctuation_offset", noise_with(|p| (p.flags, p.fluctuation.2) = (2, 16.5))),

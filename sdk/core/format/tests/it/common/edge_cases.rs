@@ -23,7 +23,9 @@ fn manifest() -> Value {
 fn with_manifest(change: impl Fn(&mut Value)) -> Vec<u8> {
     let mut manifest = manifest();
     change(&mut manifest);
-    with_text(manifest.to_string().as_bytes())
+    let mut parts = parts(manifest.to_string().as_bytes(), &block());
+    parts[1] = deflated(&parts[1]);
+    archive(&parts)
 }
 
 fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
@@ -33,7 +35,7 @@ fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
 }
 
 fn with_bytes(change: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
-    let mut bytes = with_manifest(|_| ());
+    let mut bytes = with_parts(|_| ());
     change(&mut bytes);
     bytes
 }
@@ -537,7 +539,7 @@ fn with_representations(stored: &[Stored], change: impl Fn(&mut Value)) -> Vec<u
     });
     manifest["representations"] = representations.collect();
     change(&mut manifest);
-    entries[1] = Entry::stored("manifest.json", manifest.to_string().as_bytes());
+    entries[1] = deflated(&Entry::stored("manifest.json", manifest.to_string().as_bytes()));
     archive(&entries)
 }
 
@@ -904,7 +906,7 @@ pub(super) fn limited() -> Vec<(&'static str, Vec<u8>, Limits)> {
         m["name"] = json!("");
         m["conditions"] = json!([{}, { "speed_mm_s": 1 }, { "speed_mm_s": 2 }]);
     });
-    let small = |limits: Limits| (with_manifest(|_| ()), limits);
+    let small = |limits: Limits| (with_parts(|_| ()), limits);
     // Seven numbers in lists and packed lists, and one on its own.
     let lists = with_representations(
         &[

@@ -6,6 +6,9 @@ use htex_format::{AtCondition, Condition, Law};
 
 use crate::Motion;
 
+/// Distance from 1 within which the ratio of a motion to the nearest recorded value is 1.
+const SAME_RATIO: f64 = 1e-9;
+
 /// Lowest speed at which the finger slides, mm/s. Below this speed, the texture is silent.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
 /// Lowest ratio of the playback speed to the recorded speed.
@@ -129,7 +132,10 @@ impl Interval {
     /// Returns the ratio of a speed or force to the nearest recorded value. Returns 1 if the
     /// recorded values are unknown, or if the nearest value is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
-        if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 }
+        let ratio = if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 };
+        // A nearest value that was computed can differ by rounding, which would move a spectrum
+        // beyond the edge of its band.
+        if (ratio - 1.0).abs() <= SAME_RATIO { 1.0 } else { ratio }
     }
 }
 

@@ -134,7 +134,7 @@ impl Calls<'_> {
             [null(), c"ar".as_ptr(), c"sbeta".as_ptr(), c"bands".as_ptr(), c"none".as_ptr()];
         let ways = [null(), null(), c"loop:0.1".as_ptr(), c"filter:15".as_ptr(), c"x".as_ptr()];
         let (asset, motion) = (self.asset(), self.motion());
-        let options = htex_voice_options {
+        let mut options = htex_voice_options {
             size: size_of::<htex_voice_options>() as u32,
             model: names[usize::from(self.bytes.next()) % names.len()],
             rate_hz: [0.0, 8_000.0, 20_000.0, self.number()][usize::from(self.bytes.next()) % 4],
@@ -148,7 +148,10 @@ impl Calls<'_> {
             no_level_scaling: 0,
             no_contact: 1,
             ceiling: [0.0, self.number()][usize::from(self.bytes.next()) % 2],
+            fluctuation: 0,
         };
+        // Not a byte of its own: the files that fuzzing has found keep their meaning.
+        options.fluctuation = (options.seed % 2) as u32;
         let mut voice = htex_voice { id: 0 };
         // SAFETY: live pointers.
         if self.told(unsafe { htex_voice_new(asset, &options, &mut voice) }) {

@@ -74,7 +74,7 @@ fn npy_of_records_is_a_table() {
         ("", "holds other records"),
         (&many, "expected (n,)"),
     ] {
-        let error = read("r.npy", &npy(&header(fields), &data), &options).unwrap_err();
+        let error = read("r.npy", npy(&header(fields), &data), &options).unwrap_err();
         assert!(error.contains(words), "{fields}: {error}");
     }
 }

@@ -147,8 +147,11 @@ fn with_longer(more: u32) -> Vec<u8> {
     })
 }
 
+/// The name of an entry, and its change.
+type Changed = (&'static str, fn(&mut Entry));
+
 /// Entries that are added to an asset, each after a change.
-fn with_entries(changes: &[(&str, fn(&mut Entry))]) -> Vec<u8> {
+fn with_entries(changes: &[Changed]) -> Vec<u8> {
     with_parts(|p| {
         for (name, change) in changes {
             let mut entry = Entry::stored(name, b"12345");

@@ -236,7 +236,7 @@ fn roots() -> Vec<Named> {
     let root = |change: Change| page(0, change);
     /// The first length of a leaf in the root page of `raw`, before metadata of two bytes, two
     /// lengths of spectra and a hash.
-    fn leaf_length(page: &mut Vec<u8>) -> usize {
+    fn leaf_length(page: &[u8]) -> usize {
         page.len() - 32 - 2 - 3 - 4
     }
     vec![

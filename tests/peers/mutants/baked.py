@@ -75,7 +75,6 @@ ARITHMETIC = [
     Mutant("the power rounds halves down", BAKED, "n = int(x + f32(-0.5 if x < 0 else 0.5))", "n = int(x + f32(-0.5 if x <= 0 else 0.5))",
            "for x = 0 both are 0"),
     Mutant("the power rounds towards zero", BAKED, "n = int(x + f32(-0.5 if x < 0 else 0.5))", "n = int(x)"),
-    Mutant("the power rounds negative halves up", BAKED, "n = int(x + f32(-0.5 if x < 0 else 0.5))", "n = int(np.floor(x + f32(0.5)))"),
     Mutant("the phase of a cosine has no sign", BAKED, "x = phases.astype(np.uint32).view(np.int32).astype(f32) * f32(2.0**-32)", "x = (phases.astype(np.float64) - 2.0**32 * (phases >= 2**31)).astype(f32) * f32(2.0**-32)",
            "both are the integer with sign, rounded once"),
     Mutant("the cosine has four terms", BAKED, "(COS[3] + s * COS[4])", "COS[3]"),

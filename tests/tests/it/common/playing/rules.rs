@@ -265,7 +265,7 @@ fn laws() -> Vec<Small> {
     let of = |name, contact, quantity| Small {
         contact,
         quantity,
-        ..Small::new(name, &[[80.0, 0.4]], &[[160.0, 0.8]])
+        ..Small::new(name, &[[80.0, 0.4]], &[[100.0, 0.5]])
     };
     let mut absent =
         Small::new("absent_force", &[[40.0, 0.0], [160.0, 0.4]], &[[300.0, 0.8], [90.0, 0.4]]);

@@ -352,6 +352,17 @@ fn leaves() -> Vec<Named> {
                     page[at] = 1 | 4 | 8;
                     page.drain(at + 9..at + 17);
                 },
+                // A speed that is no number.
+                |page| {
+                    let at = range(page);
+                    (page[at + 7], page[at + 8]) = (0xf8, 0x7f);
+                },
+                // A start of 2^64.
+                |page| {
+                    let at = range(page) + 17 + 25;
+                    let beyond = [&[0x80; 9][..], &[2]].concat();
+                    page.splice(at..at + 1, beyond).for_each(drop);
+                },
                 // Equal ends as two numbers.
                 |page| {
                     let at = range(page);

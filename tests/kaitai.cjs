@@ -90,6 +90,7 @@ function library(Htexlib, file) {
         author: right(contents.authors),
         quantity: contents.quantities ? word(Htexlib.Quantity, contents.quantities[i]) : null,
         felt: contents.felt && contents.felt[i].value ? (contents.felt[i].value - 1) / 100 : null,
+        heldOut: contents.heldOut && contents.heldOut[i].value ? (contents.heldOut[i].value - 1) / 100 : null,
         texture: hex(Buffer.concat(parts)),
       });
     });

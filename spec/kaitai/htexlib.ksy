@@ -255,6 +255,12 @@ types:
         repeat-expr: num_entries.value
         if: _root.header.minor >= 1
         doc: 0, or one more than the felt difference in hundredths of a decibel.
+      - id: held_out
+        type: varint
+        repeat: expr
+        repeat-expr: num_entries.value
+        if: _root.header.minor >= 1
+        doc: 0, or one more than the held-out error in hundredths of a decibel.
   spectra_contents:
     seq:
       - id: num_entries

@@ -126,6 +126,7 @@ fn described(entry: &Entry, texture: &[u8]) -> Value {
         "author": entry.author,
         "quantity": entry.quantity,
         "felt": entry.felt_error_rms_db,
+        "heldOut": entry.held_out_error_db,
         "texture": hex(texture),
     })
 }

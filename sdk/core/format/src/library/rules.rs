@@ -116,7 +116,7 @@ rule_table! {
 const HEAD: &str = "\
 # Findings of libraries
 
-A finding has a code, a severity, a place and a message. The place is `/header`, `/root`, `/leaves/N` or `/leaves/N/entries/M`, counted
+A finding has a code, a severity, a place and a message. The place is `/header`, `/root`, `/leaves/N`, `/leaves/N/entries/M` or `/spectra/N`, counted
 from 0, and empty for the file as a whole. A library is valid when no finding is an error. The meaning of a code never changes.
 [htexlib-1.md](htexlib-1.md) is the format.
 ";

@@ -306,8 +306,8 @@ fn roots() -> Vec<Named> {
 /// Where columns of a leaf of one texture of [`texture`] begin: the bits of its range.
 fn range(page: &[u8]) -> usize {
     // The bits, a speed, a force; a law; three integers and a hash; two counts of rights, one of
-    // them with a text; a licence, an author, a quantity and a felt difference.
-    page.len() - (1 + 16) - 25 - 3 - 32 - (1 + 8) - 4
+    // them with a text; a licence, an author, a quantity and two errors.
+    page.len() - (1 + 16) - 25 - 3 - 32 - (1 + 8) - 5
 }
 
 fn leaves() -> Vec<Named> {

@@ -118,7 +118,8 @@ fn limit<T: TryFrom<u64>>(number: u64) -> Result<T> {
 
 fn asset(file: &Path, given: &Map<String, Value>) -> Result<Report> {
     let limits = limited!(Limits::default(), given;
-        file_bytes, entries, entry_bytes, total_bytes, ratio, json_depth, values);
+        file_bytes, entries, entry_bytes, total_bytes, ratio, json_depth, json_nodes, conditions,
+        values);
     let models = Registry::builtin();
     let known = |representation: &htex_format::Representation| {
         Some(htex::play::model_of(&models, representation).ok()?.descriptor())
@@ -171,7 +172,8 @@ fn playing(question: &PlayingQuestion) -> Result<Value> {
 
 fn played(texture: &Texture, case: &PlayingCase, hz: &[f64]) -> Result<Value, htex::Error> {
     let motion = match (case.speed_mm_s, case.force_n) {
-        (Some(speed), Some(force)) => Some(Motion::new(speed, force)),
+        // The sign of a speed is only its direction.
+        (Some(speed), Some(force)) => Some(Motion::new(speed, force).without_direction()),
         _ => None,
     };
     let representation = texture.representation(&case.model[..])?;

@@ -24,7 +24,7 @@
  Version of this interface: the major version in the upper 16 bits, the minor version in the
  lower 16. 0x00010000 is 1.0. A new minor version only adds functions, fields and values.
  */
-#define HTEX_API_VERSION 65536
+#define HTEX_API_VERSION 65537
 
 /*
  WASM modules are not loaded. A call that needs the model in such a module returns

@@ -145,14 +145,14 @@ fn numbers(text: &str) -> Vec<f64> {
 #[test]
 fn calls_of_each_language_tell_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    let library = folder.path().join("a.htexlib");
-    let mut writer = htex::library::Writer::create(&library, "A").unwrap();
-    writer.add("a", &fs::read(asset()).unwrap()).unwrap();
-    writer.finish().unwrap();
     let fluctuating = folder.path().join("fluctuating.htex");
     let mut data = htex::format::Asset::open(&asset()).unwrap();
     data.manifest.fluctuation = htex::format::Fluctuation::from_db([4.0, 2.0]);
     fs::write(&fluctuating, data.to_bytes().unwrap()).unwrap();
+    let library = folder.path().join("a.htexlib");
+    let mut writer = htex::library::Writer::create(&library, "A").unwrap();
+    writer.add("a", &data.to_bytes().unwrap()).unwrap();
+    writer.finish().unwrap();
     let scene = asset().with_file_name("constant.scene.json");
 
     let opened = Texture::open(&fluctuating).unwrap();

@@ -13,6 +13,7 @@ from .library import read_library
 from .models import read_models
 from .playing import compare_playing
 from .probes import compare_probes
+from .quality import compare_quality
 from .scene import read_scene
 
 
@@ -54,6 +55,7 @@ def main() -> int:
     )
     summary("recording-conformance", *compare_recordings(spec / "recording-conformance", print))
     summary("baked-conformance", *compare_baked(spec / "baked-conformance", print))
+    summary("quality-conformance", *compare_quality(spec / "quality-conformance", models, print))
     if arguments.probes:
         for kind, (agree, total) in compare_probes(arguments.probes, models, spec / "schemas", print).items():
             summary(f"probes/{kind}", agree, total)

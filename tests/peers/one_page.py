@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import inspect
 import io
 import json
 import sys
@@ -46,13 +47,14 @@ def same_numbers(page, path: Path, asset) -> int:
     return compared
 
 
-def flat(asset, condition: int) -> list[float]:
-    """The parameters of a condition, each list preceded by its length."""
+def flat(page, asset, condition: int) -> list[float]:
+    """The parameters of a condition in the model's order, each list preceded by its length."""
     _, representation, sets = asset
+    lists = {field["name"]: field.get("list", False) for field in representation["fields"]}
     numbers = []
-    for field in representation["fields"]:
-        values = sets[condition][field["name"]]
-        numbers += [len(values), *values] if field.get("list") else [*values]
+    for name in list(inspect.signature(page.CURVES[representation["model"]]).parameters)[3:]:
+        values = sets[condition][name]
+        numbers += [len(values), *values] if lists[name] else [*values]
     return numbers
 
 
@@ -76,7 +78,7 @@ def compare_cases(page, path: Path) -> tuple[int, int]:
             (factor, case["frequency_factor"]),
             (level, case["level_rms"]),
             (magnitude(frequencies), case["magnitude"]),
-            (flat(asset, here[0] if here else 0), case["parameters"]),
+            (flat(page, asset, here[0] if here else 0), case["parameters"]),
         ]
         wrong = [(ours, theirs) for ours, theirs in pairs if not close(ours, theirs) <= 1]
         assert not wrong, (path.name, case["model"], motion, wrong)

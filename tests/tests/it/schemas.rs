@@ -44,6 +44,7 @@ const REFUSED: &[&str] = &[
     "json_type_fraction",
     "json_type_integer_above",
     "json_type_integer_negative",
+    "json_type_integer_of_digits",
     "json_type_missing",
     "json_type_missing_last",
     "json_type_null",
@@ -264,6 +265,8 @@ fn ajv_says_the_same_where_it_is() {
     let mut ours = refused("manifest-1.json", &manifests);
     ours.extend(refused("scene-1.json", &scenes));
     ours.sort_unstable();
+    // JavaScript reads 2^53 + 1 as 2^53, which is valid.
+    ours.retain(|name| name != "json_type_integer_of_digits");
     assert_eq!(told, ours);
 }
 

@@ -69,7 +69,7 @@ static class Calls
             }
             if (!Devices.Play(voice, paths[3]))
                 return 1;
-            var folder = Path.GetDirectoryName(paths[0]);
+            var folder = Path.GetDirectoryName(paths[2]);
             int notes = 0;
             LibHtex.SetLog((level, text) => notes++);
             Func<string, byte[]> files = name => File.ReadAllBytes(Path.Combine(folder, name));

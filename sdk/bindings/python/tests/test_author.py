@@ -155,7 +155,7 @@ def test_columns_of_frames_are_known_by_their_names(place: pathlib.Path) -> None
         assert np.array_equal(found.spectrum.magnitude, expected.spectrum.magnitude)
         assert (found.rate_hz, found.condition) == (expected.rate_hz, expected.condition)
     # Times in the index, and names that CSV would have to quote.
-    timed = frame.drop(columns="time_s").set_index(pd.to_timedelta(frame["time_s"], unit="s"))
+    timed = frame.drop(columns="t_s").set_index(pd.to_timedelta(frame["t_s"], unit="s"))
     found = htex.process(timed.rename_axis(None).assign(**{"it's, a µ": 0.0}))
     np.testing.assert_allclose(found.spectrum.magnitude, expected.spectrum.magnitude, rtol=1e-9)
     with pytest.raises(htex.OptionError, match="double quote"):

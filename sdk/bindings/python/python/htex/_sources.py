@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from collections.abc import Mapping
 from typing import Any, BinaryIO, Union
 
@@ -17,6 +18,9 @@ from . import _errors
 from ._data import Simulation
 
 Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
+
+# First words of the names of columns that have the time.
+_TIMES = ("t", "time", "timestamp", "elapsed")
 
 
 def sources(recordings: Any) -> list[Any]:
@@ -67,7 +71,8 @@ def _columns(recording: Any) -> dict[str, Any] | None:
         return None
     columns = {name: _unmasked(f"column {name!r}", recording[name]) for name in names}
     index = np.asarray(getattr(recording, "index", ()))
-    if index.dtype.kind not in "mM" or index.size == 0 or any(name.lower().startswith("time") for name in names):
+    has_time = any(re.split(r"[^a-z]", name.lower())[0] in _TIMES for name in names)
+    if index.dtype.kind not in "mM" or index.size == 0 or has_time:
         return columns
     return {"time_s": (index - index[0]) / np.timedelta64(1, "ns") * 1e-9, **columns}
 

@@ -18,22 +18,24 @@ async function validated() {
   };
 }
 
-/** The parameters in one array, in the order of the representation's fields; lists are preceded by their lengths. */
-function flat(texture, at) {
+/** The parameters in one array, in the order of the model's descriptor; lists are preceded by their lengths. */
+async function flat(texture, at) {
   const named = texture.parameters(at);
-  const { fields } = texture.manifest.representations.find(({ model }) => model === at.model);
-  return fields.flatMap(({ name, list }) => (list ? [named[name].length, ...named[name]] : [named[name]]));
+  const descriptor = new URL(`../../../../spec/models/${at.model}.json`, import.meta.url);
+  const { fields } = JSON.parse(await readFile(descriptor, "utf8"));
+  return fields.flatMap(({ name, kind }) => (kind.type === "list" ? [named[name].length, ...named[name]] : [named[name]]));
 }
 
 /** The numbers of a case; null for one that the package refuses. */
-function played(texture, frequencies, { model, speed_mm_s: speed, force_n: force }) {
+async function played(texture, frequencies, { model, speed_mm_s: speed, force_n: force }) {
   try {
-    const at = { model, at: speed === undefined ? undefined : { speed, force } };
+    // The sign of a speed is only its direction.
+    const at = { model, at: speed === undefined ? undefined : { speed: Math.abs(speed), force } };
     const voice = texture.voice({ model, rate: 48000 });
     const coverage = at.at ? voice.coverage(at.at) : undefined;
     voice.free();
     return {
-      parameters: flat(texture, at),
+      parameters: await flat(texture, at),
       frequency_factor: coverage?.frequencyFactor ?? 1,
       level_rms: texture.level(at),
       magnitude: [...texture.spectrum(frequencies, at)],
@@ -47,7 +49,7 @@ function played(texture, frequencies, { model, speed_mm_s: speed, force_n: force
 async function playing() {
   const question = JSON.parse(await readFile(file, "utf8"));
   const texture = await open(await readFile(question.asset));
-  const cases = question.cases.map((one) => played(texture, question.frequency_hz, one));
+  const cases = await Promise.all(question.cases.map((one) => played(texture, question.frequency_hz, one)));
   return { verdict: "valid", values: { cases } };
 }
 

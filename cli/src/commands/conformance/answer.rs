@@ -171,12 +171,11 @@ fn playing(question: &PlayingQuestion) -> Result<Value> {
 }
 
 fn played(texture: &Texture, case: &PlayingCase, hz: &[f64]) -> Result<Value, htex::Error> {
-    let motion = match (case.speed_mm_s, case.force_n) {
-        // The sign of a speed is only its direction.
-        (Some(speed), Some(force)) => Some(Motion::new(speed, force).without_direction()),
-        _ => None,
-    };
     let representation = texture.representation(&case.model[..])?;
+    let is_given = case.speed_mm_s.is_some() || case.force_n.is_some();
+    // The sign of a speed is only its direction.
+    let motion =
+        is_given.then(|| representation.motion(case.speed_mm_s, case.force_n).without_direction());
     let (parameters, _) = representation.parameters(motion)?;
     Ok(json!({
         "parameters": parameters,

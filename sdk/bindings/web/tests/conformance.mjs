@@ -30,7 +30,7 @@ async function flat(texture, at) {
 async function played(texture, frequencies, { model, speed_mm_s: speed, force_n: force }) {
   try {
     // The sign of a speed is only its direction.
-    const at = { model, at: speed === undefined ? undefined : { speed: Math.abs(speed), force } };
+    const at = { model, at: speed === undefined && force === undefined ? undefined : { speed: speed && Math.abs(speed), force } };
     const voice = texture.voice({ model, rate: 48000 });
     const coverage = at.at ? voice.coverage(at.at) : undefined;
     voice.free();

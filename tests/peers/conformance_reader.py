@@ -87,8 +87,7 @@ def playing(path: Path, _options: dict) -> dict:
     for case in question["cases"]:
         try:
             voice = voices.get(case["model"]) or voices.setdefault(case["model"], Voice(asset, models[case["model"]]))
-            given = "speed_mm_s" in case
-            now = voice.at(*((case["speed_mm_s"], case["force_n"]) if given else voice.default()))
+            now = voice.at(*voice.motion(case))
         except Refusal:
             cases.append(None)
             continue

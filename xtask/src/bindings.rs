@@ -17,7 +17,8 @@ use anyhow::{Context, Result, bail, ensure};
 pub(crate) use fixtures::command;
 
 use crate::jobs::at_a_time;
-use crate::places::{emptied, target};
+use crate::places::{cargo, emptied, target, workspace};
+use crate::programs::run;
 
 /// A binding: its name, the programs that its tests need, and the tests.
 struct Binding {
@@ -52,12 +53,13 @@ const QEMU_USER: [Program; 2] = [
     Program { names: &["qemu-aarch64"], how: "apt-get install qemu-user" },
 ];
 
-const BINDINGS: [Binding; 5] = [
+const BINDINGS: [Binding; 6] = [
     Binding { name: "c", needs: &[CC, PKG_CONFIG, CMAKE, SDL2], test: c::test },
     Binding { name: "python", needs: &[PYTHON], test: python::test },
     Binding { name: "web", needs: &[NODE, NPM, CHROMIUM, CLANG], test: web::test },
     Binding { name: "studio", needs: &[NODE, NPM, CHROMIUM], test: studio::test },
     Binding { name: "processors", needs: &QEMU_USER, test: processors::sample },
+    Binding { name: "test-programs", needs: &[], test: test_programs },
 ];
 
 /// Proofs that take too long for the tests of continuous integration.
@@ -82,6 +84,14 @@ pub fn test(names: &[String]) -> Result<()> {
     // Two at a time on two cores. With three, a browser that plays sound runs dry.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)
+}
+
+/// Builds the test programs of the workspace. Browser tests mostly wait, and the last ones run
+/// alone.
+fn test_programs(_: &Path) -> Result<()> {
+    let mut build = Command::new("nice");
+    build.arg(cargo()).args(["test", "--locked", "--no-run"]).current_dir(workspace());
+    run(&mut build)
 }
 
 /// Combines several errors into one.

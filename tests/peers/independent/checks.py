@@ -13,6 +13,8 @@ from .models import Models
 from .plugins import signature_is_valid
 from .stores import Store
 from .tables import CODED
+
+KNOWN_EXTENSIONS = (CODED, "org.htex.hatt/1", "org.htex.appearance/1")
 from .typed import is_blank
 
 DOI = re.compile(r"10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+")
@@ -234,7 +236,7 @@ def check_extensions(manifest: dict, findings: Findings) -> None:
         if not EXTENSION.fullmatch(name):
             findings.add("EXTENSION_NAME_INVALID", f"/extensions/{escape(name)}")
     for index, name in enumerate(manifest.get("extensions_required", [])):
-        if name == CODED:
+        if name in KNOWN_EXTENSIONS:
             continue
         findings.add("EXTENSION_REQUIRED_UNKNOWN", f"/extensions_required/{index}")
 

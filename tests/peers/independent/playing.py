@@ -52,8 +52,6 @@ class Voice:
         self.sets = [
             [block[stored.index(field["name"])] for field in model["fields"]] for block in asset.blocks[index]
         ]
-        for values in self.sets:
-            check_ranges(model, values)
         self.levels = [element["level_rms"] for element in representation["at"]]
         conditions = [manifest["conditions"][int(element["condition"])] for element in representation["at"]]
         speeds = [condition.get("speed_mm_s") for condition in conditions]
@@ -85,13 +83,21 @@ class Voice:
         speed, force = self.stated[chosen]
         return speed or 0.0, force or 0.0
 
+    def motion(self, case: dict) -> tuple[float, float]:
+        """Speed and force of a case; what it lacks is the default condition's."""
+        speed, force = self.default()
+        return case.get("speed_mm_s", speed), case.get("force_n", force)
+
     def at(self, speed: float, force: float) -> Played:
         # A finger slides in either direction, and nothing else depends on the sign.
         speed = abs(speed)
         point = (self.axes[0].position(speed), self.axes[1].position(force))
         weights, foot = self.mesh.weights(point)
         kept = sorted((i for i, w in weights.items() if w > LEFT_OUT), key=lambda i: self.mesh.points[i])
+        for i in kept:
+            check_ranges(self.model, self.sets[i])
         values = mix(self.model["id"], [self.sets[i] for i in kept], [weights[i] for i in kept])
+        check_ranges(self.model, values)
         level = sum(weights[i] * self.levels[i] for i in kept)
         ratio_v, ratio_f = self.ratios(speed, force, foot)
         a, b, c = (0.0, 0.0, 0.0) if self.model["id"] in FOLLOW_THE_MOTION else self.exponents
@@ -161,14 +167,12 @@ def compare_playing(folder: Path, models: Models, say: Callable[[str], None]) ->
         frequencies = np.array(cases["frequency_hz"])
         for case in cases["cases"]:
             total += 1
-            given = "speed_mm_s" in case
-            where = f"{case['speed_mm_s']} mm/s {case['force_n']} N" if given else "no motion"
-            what = f"{path.stem} {case['model']} {where}"
+            what = f"{path.stem} {case['model']} {case.get('speed_mm_s', '-')} mm/s {case.get('force_n', '-')} N"
             refused = case.get("refused", False)
             try:
                 voice = voices.setdefault(case["model"], None) or Voice(asset, models[case["model"]])
                 voices[case["model"]] = voice
-                played = voice.at(*(case["speed_mm_s"], case["force_n"]) if given else voice.default())
+                played = voice.at(*voice.motion(case))
                 if refused:
                     say(f"{what}: played, and is to be refused")
                     continue

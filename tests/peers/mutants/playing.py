@@ -140,6 +140,10 @@ DEFAULT = [
     Mutant("an element whose speed is absent is silent", PLAYING, "(speed is None or speed >= SLIDES_MM_S)", "((speed or 0.0) >= SLIDES_MM_S)"),
     Mutant("an element whose force is absent is silent", PLAYING, "(force is None or force > 0)", "((force or 0.0) > 0)"),
     Mutant("of equally strong elements the last is the default", PLAYING, "key=lambda i: (self.levels[i], -i)", "key=lambda i: (self.levels[i], i)"),
+    Mutant("a speed alone is played at the default condition's", PLAYING, 'case.get("speed_mm_s", speed)', 'case["speed_mm_s"] if len({"speed_mm_s", "force_n"} & case.keys()) == 2 else speed'),
+    Mutant("a force alone is played at the default condition's", PLAYING, 'case.get("force_n", force)', 'case["force_n"] if len({"speed_mm_s", "force_n"} & case.keys()) == 2 else force'),
+    Mutant("a force that is not given is 0.4 N", PLAYING, 'case.get("force_n", force)', 'case.get("force_n", 0.4)'),
+    Mutant("a speed that is not given is 80 mm/s", PLAYING, 'case.get("speed_mm_s", speed)', 'case.get("speed_mm_s", 80.0)'),
     Mutant("the default condition is the weakest", PLAYING, "chosen = max(heard, key=lambda i: (self.levels[i], -i))", "chosen = min(heard, key=lambda i: (self.levels[i], -i))"),
 ]
 
@@ -219,6 +223,8 @@ SHAPE = [
     Mutant("MFCC: inverse 3 is constant beyond the apexes", SHAPES, "power += first * np.minimum(at - x[0], 0) + last * np.maximum(at - x[-1], 0)", "pass"),
     Mutant("MFCC: inverse 3 has any slope", SHAPES, "/ (x[i + 1] - x[i]), -8, 8)", "/ (x[i + 1] - x[i]), -80, 80)"),
     Mutant("MFCC: magnitudes between grid points are in decibels", SHAPES, "    amplitudes = np.sqrt(power)\n    return normed(lambda f: np.interp(f, band.grid, amplitudes), band)", "    amplitudes = np.sqrt(power)\n    return normed(lambda f: np.exp(np.interp(f, band.grid, np.log(amplitudes + 1e-300))), band)"),
+    Mutant("sets outside the mix are in their ranges too", PLAYING, "        for i in kept:\n            check_ranges", "        for i in range(len(self.sets)):\n            check_ranges"),
+    Mutant("sets of the mix may be out of their ranges", PLAYING, "        for i in kept:\n            check_ranges(self.model, self.sets[i])\n", ""),
     Mutant("ranges of parameters are not checked", PLAYING, '            raise Refusal(f"{field[\'name\']} is out of range")\n', "            pass\n"),
     Mutant("lengths of lists are not checked", PLAYING, '            raise Refusal(f"too many {field[\'name\']}")\n', "            pass\n"),
     Mutant("another major version of a model is played", PLAYING, '            raise Refusal("another major version of the model")\n', "            pass\n"),

@@ -8,7 +8,7 @@ import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-import { FILE, HTEX_CHROMIUM, SCREENS, browser, bytesOf, closed, folder, goTo, htex, openStudio, prepare, ready, saved, server, shaping, thorough } from "./studio.mjs";
+import { browser, bytesOf, closed, FILE, folder, goTo, htex, HTEX_CHROMIUM, isWhole, openStudio, prepare, ready, saved, SCREENS, server, shaping, thorough } from "./studio.mjs";
 
 prepare();
 
@@ -183,7 +183,7 @@ test("a texture that was forgotten comes back by Undo in the message", async () 
   await closed(page);
 });
 
-for (const [way, address] of [["the file", () => FILE], ["the folder", () => server.address]]) {
+for (const [way, address] of [["the file", () => FILE], ["the folder", () => server.address]].slice(0, isWhole ? 2 : 1)) {
   test(`${way}: what was drawn just before the page is closed is there again`, async () => {
     let page = await openStudio(browser, address());
     const context = page.context();
@@ -374,7 +374,7 @@ test("two tabs show the same work, and neither overwrites the other's", async ()
   await closed(page);
 });
 
-test("two tabs have the same shelf", async () => {
+thorough("two tabs have the same shelf", async () => {
   const page = await openStudio(browser, server.address);
   const tab = await openTab(page, server.address);
   await keepAs(tab, "Of the other tab");
@@ -442,7 +442,7 @@ async function assertWorksWithoutStorage(page, told) {
   assert.match(await card(page, "Without storage").textContent(), /Not stored/);
 }
 
-test("a database that never answers leaves a page that works, and what was made is stored once it answers", async () => {
+thorough("a database that never answers leaves a page that works, and what was made is stored once it answers", async () => {
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, acceptDownloads: true });
   // Another page of this address holds the database while it is to be deleted: nobody else gets an answer.
   const other = await context.newPage();
@@ -491,7 +491,7 @@ function tooWide(page) {
   });
 }
 
-for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 }]) {
+for (const viewport of [{ width: 1400, height: 900 }, { width: 390, height: 844 }].slice(isWhole ? 0 : 1)) {
   test(`long names wrap: ${viewport.width} px`, async () => {
     const page = await openStudio(browser, FILE, { viewport });
     const name = "Oberflächenbeschaffenheit".repeat(4);

@@ -64,7 +64,7 @@ async function assertRougher(page, { name, bytes }, [low, high]) {
 /** Waits until something is heard. */
 const isHeard = (page) => page.waitForFunction(() => Math.max(...htexStudio.heard(new Float32Array(1024))) > 0.01);
 
-test("make this rougher and keep it: by mouse", async () => {
+thorough("make this rougher and keep it: by mouse", async () => {
   const page = await openStudio(browser, FILE);
   const first = await decibels(page, [45, 400]);
   await page.getByText("Drag a knob up or down").waitFor();
@@ -194,7 +194,7 @@ thorough("there is no ghost if less motion is wanted, and it stops by itself", a
   await closed(page);
 });
 
-test("each hint is closed when it was done or dismissed, and does not come again", async () => {
+thorough("each hint is closed when it was done or dismissed, and does not come again", async () => {
   const page = await openStudio(browser, server.address);
   const [onKnobs, onSave] = [page.getByText("Drag a knob up or down"), page.getByText("Do you like it?")];
   await onKnobs.waitFor();
@@ -301,7 +301,7 @@ test("a knob is turned by mouse, wheel and keys; Shift makes fine steps, and eac
   await closed(page);
 });
 
-test("each knob changes what its words say, on every screen", async () => {
+thorough("each knob changes what its words say, on every screen", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Oak");
   const at = [45, 160, 640];
@@ -369,7 +369,7 @@ test("Compare plays the side that a knob changes, and a blind test cannot be cha
   await closed(page);
 });
 
-test("Vary makes nine others once a turn is over, not during it", async () => {
+thorough("Vary makes nine others once a turn is over, not during it", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Oak");
   await goTo(page, "Vary");
@@ -457,7 +457,7 @@ for (const [name, index, turned] of [["Oak", 6, "Rougher"], ["Cork", 1, "Brighte
   });
 }
 
-test("locks of peaks stay with their peaks when others are added and removed", async () => {
+thorough("locks of peaks stay with their peaks when others are added and removed", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Corduroy");
   await shaping(page);
@@ -529,7 +529,7 @@ test("a range is dragged along the axis, and limits knobs and drawing to it", as
   await closed(page);
 });
 
-test("a range is typed, moved at its ends, and removed by a double click", async () => {
+thorough("a range is typed, moved at its ends, and removed by a double click", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Corduroy");
   await shaping(page);
@@ -555,7 +555,7 @@ test("a range is typed, moved at its ends, and removed by a double click", async
   await closed(page);
 });
 
-test("a curve that changes only as a whole is redrawn by the first turn within a range", async () => {
+thorough("a curve that changes only as a whole is redrawn by the first turn within a range", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Cork");
   await shaping(page);
@@ -574,7 +574,7 @@ test("a curve that changes only as a whole is redrawn by the first turn within a
   await closed(page);
 });
 
-test("by touch, the ends of the range are dragged, and a swipe on the axis scrolls", async () => {
+thorough("by touch, the ends of the range are dragged, and a swipe on the axis scrolls", async () => {
   const page = await openStudio(browser, FILE, UPRIGHT);
   await goTo(page, "Shelf");
   await page.getByRole("button", { name: /^Oak/ }).tap();
@@ -628,7 +628,7 @@ test("a value is typed at the handle", async () => {
   await closed(page);
 });
 
-test("Shift makes fine steps on the curve", async () => {
+thorough("Shift makes fine steps on the curve", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Guitar string");
   await shaping(page);
@@ -811,7 +811,7 @@ test("a player page says what it plays, plays nothing before a press, and is use
   await closed(page);
 });
 
-test("a player page by mouse, with the model that was chosen; a page from disk names no studio", async () => {
+thorough("a player page by mouse, with the model that was chosen; a page from disk names no studio", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Vinyl");
   await shaping(page);

@@ -71,7 +71,7 @@ async function inFile(bytes) {
   return JSON.parse(htex("info", file("saved.htex"), "--json")).manifest.extensions?.[APPEARANCE];
 }
 
-test("a wood is warm, a metal is cool, and both look the same after a reload and in the folder", async () => {
+thorough("a wood is warm, a metal is cool, and both look the same after a reload and in the folder", async () => {
   const page = await openStudio(browser, FILE);
   const looks = (of) => cardPictures(of, ["Oak", "Brushed steel", "Silk"]);
   const [oak, steel, silk] = await looks(page);
@@ -138,7 +138,7 @@ test("the light is dragged, and moved by keys", async () => {
   await closed(page);
 });
 
-test("keys alone set the appearance; it is in the file, on the pad and on the card, and each key is a step", async () => {
+thorough("keys alone set the appearance; it is in the file, on the pad and on the card, and each key is a step", async () => {
   const page = await openStudio(browser, FILE, { reducedMotion: "reduce" });
   await take(page, "Slate");
   const before = await padPicture(page);
@@ -227,7 +227,7 @@ test("shaping, varying and mixing carry the appearance along", async () => {
   await closed(page);
 });
 
-test("an appearance that breaks the schema is guessed instead, and nothing fails", async () => {
+thorough("an appearance that breaks the schema is guessed instead, and nothing fails", async () => {
   const page = await openStudio(browser, FILE, { reducedMotion: "reduce" });
   const guess = await make("Guess", { tags: ["oak"] });
   const wrong = [null, [], "red", 7, {}, { ...WOOD, hue_deg: 400 }, { ...WOOD, gloss: "high" }, { ...WOOD, pattern: "stars" }, { ...WOOD, more: 1 }, { ...WOOD, relief: undefined }];
@@ -244,7 +244,7 @@ test("an appearance that breaks the schema is guessed instead, and nothing fails
   await closed(page);
 });
 
-test("the player page shows the texture lit, and its light moves", async () => {
+thorough("the player page shows the texture lit, and its light moves", async () => {
   const page = await openStudio(browser, FILE);
   await take(page, "Oak");
   await goTo(page, "Save");

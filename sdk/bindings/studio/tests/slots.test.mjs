@@ -264,7 +264,7 @@ test("during a blind test, versions and steps are disabled", async () => {
   await closed(page);
 });
 
-test("both versions are there after a reload, and in each tab", async () => {
+thorough("both versions are there after a reload, and in each tab", async () => {
   const page = await openStudio(browser, server.address);
   await load(page, "Oak");
   await draw(page, 0.2);
@@ -316,7 +316,7 @@ test("both versions are there after a reload, and in each tab", async () => {
   await closed(page);
 });
 
-test("both versions of the texture that the page begins with are stored once one is changed", async () => {
+thorough("both versions of the texture that the page begins with are stored once one is changed", async () => {
   const page = await openStudio(browser, server.address);
   const a = await bytesOf(page);
   await version(page, "B").click();
@@ -608,7 +608,7 @@ for (const colorScheme of isWhole ? ["light", "dark"] : ["dark"]) {
   });
 }
 
-test("the code follows the texture", async () => {
+thorough("the code follows the texture", async () => {
   const page = await openStudio(browser, remote);
   await load(page, "Oak");
   await showCode(page);

@@ -206,17 +206,22 @@ fn playing(folder: &Path, file: PlayingFile) -> Task {
     let asked: Vec<Value> = file
         .cases
         .iter()
-        .map(|case| match (case.speed_mm_s, case.force_n) {
-            (Some(speed), Some(force)) => {
-                json!({"model": case.model, "speed_mm_s": speed, "force_n": force})
+        .map(|case| {
+            let mut asked = json!({ "model": case.model });
+            for (key, value) in [("speed_mm_s", case.speed_mm_s), ("force_n", case.force_n)] {
+                if let Some(value) = value {
+                    asked[key] = value.into();
+                }
             }
-            _ => json!({"model": case.model}),
+            asked
         })
         .collect();
     let cases = file.cases.into_iter().map(|case| Case {
         what: match (case.speed_mm_s, case.force_n) {
             (Some(speed), Some(force)) => format!("{} at {speed} mm/s, {force} N", case.model),
-            _ => format!("{} without a motion", case.model),
+            (Some(speed), None) => format!("{} at {speed} mm/s", case.model),
+            (None, Some(force)) => format!("{} at {force} N", case.model),
+            (None, None) => format!("{} without a motion", case.model),
         },
         expected: (!case.refused).then_some(Numbers {
             parameters: case.parameters,

@@ -9,8 +9,9 @@ use crate::error::MetadataError;
 use crate::license::check_license;
 use htex_model::Band;
 
+use crate::APPEARANCE;
 use crate::law::{Law, MOST_EXPONENT};
-use crate::manifest::{CODED, Condition, Manifest};
+use crate::manifest::{CODED, Condition, HATT, Manifest};
 use crate::rules as rule;
 use htex_base::finding::Findings;
 use htex_base::finding::escape;
@@ -160,6 +161,9 @@ fn check_law(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
+/// The extensions that this crate knows.
+const KNOWN_EXTENSIONS: [&str; 3] = [CODED, APPEARANCE, HATT];
+
 fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     for name in manifest.extensions.keys() {
         if let Err(error) = check_extension_name(name) {
@@ -167,7 +171,7 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
         }
     }
     for (i, name) in manifest.extensions_required.iter().enumerate() {
-        if name == CODED {
+        if KNOWN_EXTENSIONS.contains(&&name[..]) {
             continue;
         }
         let pointer = format!("/extensions_required/{i}");

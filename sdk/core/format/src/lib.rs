@@ -83,8 +83,9 @@ pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, CODED, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,
-    Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
+    AtCondition, CODED, Condition, HATT, How, Ingredient, Made, Manifest, Plugin, Provenance,
+    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField,
+    VERSION,
 };
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
 pub use page::{appearance_schema, manifest_schema, report_schema, validation_page};

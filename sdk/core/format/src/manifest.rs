@@ -30,6 +30,9 @@ const VERSIONS: [&str; 2] = ["1.0", VERSION];
 /// The extension that a coded asset requires: coded fields, and tables of conditions.
 pub const CODED: &str = "org.htex.coded/1";
 
+/// The extension of assets that are imported from the Penn Haptic Texture Toolkit.
+pub const HATT: &str = "org.htex.hatt/1";
+
 /// The manifest of an asset: the metadata of one surface and its models.
 ///
 /// ```no_run

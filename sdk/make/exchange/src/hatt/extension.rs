@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::texture::Texture;
 
 /// The extension's name in an asset.
-pub const EXTENSION: &str = "org.htex.hatt/1";
+pub const EXTENSION: &str = htex_format::HATT;
 
 /// Numbers from a model file of the Penn Haptic Texture Toolkit that a player of the texture does
 /// not need.

@@ -39,6 +39,11 @@ impl Plan {
     }
 }
 
+/// The speed, mm/s, and the force, newtons, at which an asset is read, if they are given.
+type Given = [Option<f64>; 2];
+
+const NO_MOTION: Given = [None, None];
+
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
 /// The conditions of assets with three to five are far from a line and from a circle. The
@@ -189,8 +194,9 @@ pub fn files() -> Vec<File> {
         let bytes = asset(&registry, number, plan);
         let texture = Texture::from_bytes(&bytes).unwrap();
         let given = plan.conditions.iter().chain(plan.motions);
-        let given = given.filter(|motion| slides(motion[0], motion[1])).copied().map(Some);
-        let motions: Vec<_> = given.chain(plan.levels.map(|_| None)).collect();
+        let given =
+            given.filter(|motion| slides(motion[0], motion[1])).map(|motion| motion.map(Some));
+        let motions: Vec<_> = given.chain(plan.levels.map(|_| NO_MOTION)).collect();
         let mut frequency_hz = texture.band().grid_hz();
         frequency_hz.extend(BESIDE_HZ);
         files.extend(pair(plan.name, bytes, &motions, &frequency_hz));
@@ -203,12 +209,7 @@ pub fn files() -> Vec<File> {
 }
 
 /// An asset's file, and the file of the values read from it.
-fn pair(
-    name: &str,
-    bytes: Vec<u8>,
-    motions: &[Option<[f64; 2]>],
-    frequency_hz: &[f64],
-) -> [File; 2] {
+fn pair(name: &str, bytes: Vec<u8>, motions: &[Given], frequency_hz: &[f64]) -> [File; 2] {
     let numbers = numbers(name, &Texture::from_bytes(&bytes).unwrap(), motions, frequency_hz);
     let path = |ending: &str| format!("{CASES}/{name}.{ending}");
     [(path("htex"), bytes), (path("json"), numbers.into_bytes())]
@@ -277,14 +278,8 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// The values read from an asset, one line of JSON per case. The motions are a speed and a force;
-/// `None` is no motion.
-fn numbers(
-    name: &str,
-    asset: &Texture,
-    motions: &[Option<[f64; 2]>],
-    frequency_hz: &[f64],
-) -> String {
+/// The values read from an asset, one line of JSON per case.
+fn numbers(name: &str, asset: &Texture, motions: &[Given], frequency_hz: &[f64]) -> String {
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
         let model = &representation.model;
@@ -292,9 +287,10 @@ fn numbers(
             let read = values(asset, model, *motion, frequency_hz);
             let mut case = read.unwrap_or_else(|_| json!({ "refused": true }));
             case["model"] = model[..].into();
-            if let Some([speed, force]) = motion {
-                case["speed_mm_s"] = (*speed).into();
-                case["force_n"] = (*force).into();
+            for (key, value) in ["speed_mm_s", "force_n"].into_iter().zip(*motion) {
+                if let Some(value) = value {
+                    case[key] = value.into();
+                }
             }
             cases.push(case);
         }
@@ -311,12 +307,13 @@ fn numbers(
 fn values(
     asset: &Texture,
     model: &str,
-    motion: Option<[f64; 2]>,
+    motion: Given,
     frequency_hz: &[f64],
 ) -> Result<Value, htex::Error> {
     let playable = asset.representation(model)?;
     // The direction of a motion has no effect.
-    let motion = motion.map(|[speed, force]| htex::Motion::new(speed, force).without_direction());
+    let motion =
+        (motion != NO_MOTION).then(|| playable.motion(motion[0], motion[1]).without_direction());
     let (parameters, _) = playable.parameters(motion)?;
     let factor = match motion {
         Some(motion) if !playable.model()?.follows_motion() => {

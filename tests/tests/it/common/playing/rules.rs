@@ -7,8 +7,8 @@ use htex_format::{Asset, Manifest, round_parameters};
 use htex_host::Registry;
 use serde_json::{Value, json};
 
-use super::TACTILE_HZ;
 use super::parameters::parameters;
+use super::{Given, NO_MOTION, TACTILE_HZ};
 
 /// An asset of a few models.
 pub(super) struct Small {
@@ -23,8 +23,8 @@ pub(super) struct Small {
     pub triangles: Vec<[usize; 3]>,
     /// Short names of models, and a flat array for each condition.
     pub models: Vec<(&'static str, Vec<Vec<f64>>)>,
-    /// Motions at which it is read; `None` is no motion.
-    pub motions: Vec<Option<[f64; 2]>>,
+    /// Motions at which it is read.
+    pub motions: Vec<Given>,
     /// A change of the manifest.
     pub change: fn(&mut Value),
 }
@@ -43,7 +43,7 @@ impl Small {
             levels: None,
             triangles: Vec::new(),
             models: vec![("sslope", (0..conditions.len()).map(slopes).collect())],
-            motions: motions.iter().map(|motion| Some(*motion)).collect(),
+            motions: motions.iter().map(|motion| motion.map(Some)).collect(),
             change: |_| (),
         }
     }
@@ -303,7 +303,11 @@ fn defaults() -> Vec<Small> {
         Small {
             conditions: conditions.to_vec(),
             levels: Some(levels.to_vec()),
-            motions: vec![None],
+            motions: if conditions.as_flattened().contains(&None) {
+                vec![NO_MOTION]
+            } else {
+                vec![NO_MOTION, [Some(100.0), None], [None, Some(0.6)]]
+            },
             ..Small::new(name, &known, &[])
         }
     };
@@ -380,7 +384,7 @@ fn mixtures() -> Vec<Small> {
         ),
         Small {
             motions: [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 160.0, 40.000_000_01, 159.999_999_99]
-                .map(|speed| Some([speed, 0.4]))
+                .map(|speed| [Some(speed), Some(0.4)])
                 .to_vec(),
             ..Small::of_sets(
                 "mixed_speak",
@@ -402,7 +406,7 @@ fn mixtures() -> Vec<Small> {
         ),
         Small {
             motions: [60.0, 60.000_000_01, 60.000_001, 59.999_999, 100.0]
-                .map(|speed| Some([speed, 0.4]))
+                .map(|speed| [Some(speed), Some(0.4)])
                 .to_vec(),
             ..Small::of_sets("mixed_map", "map", (0..3).map(map).collect())
         },
@@ -481,6 +485,12 @@ fn refused() -> Vec<Small> {
                 ("bands", [list(&[]), vec![1.0, 0.0]].concat()),
                 ("speak", [list(&[10.0]), list(&[1.0]), vec![0.0]].concat()),
             ],
+        ),
+        // One set is out of range: the motions of its mixes are refused, and the others are not.
+        Small::of_sets(
+            "refused_set",
+            "sslope",
+            vec![slopes(0), slopes(1), vec![100.0, 21.0, 1.0], slopes(3)],
         ),
         Small {
             change: |m| m["representations"][0]["model_version"] = json!("2.0.0"),

@@ -104,6 +104,12 @@ pub(super) fn valid() -> Vec<Named> {
                 fields.unwrap().reverse();
             }),
         ),
+        (
+            "valid_extensions_required",
+            with_manifest(|m| {
+                m["extensions_required"] = json!(["org.htex.hatt/1", "org.htex.appearance/1"]);
+            }),
+        ),
         ("valid_triangles", with_triangles(&RECTANGLE, &FLIPPED)),
         ("valid_triangles_narrow", narrow()),
         ("valid_triangles_empty", without()),

@@ -64,7 +64,7 @@ def compare_cases(page, path: Path) -> tuple[int, int]:
     frequencies = np.array(cases["frequency_hz"])
     at, elsewhere = 0, 0
     for case in cases["cases"]:
-        if case["model"] not in page.CURVES or "speed_mm_s" not in case or case.get("refused"):
+        if case["model"] not in page.CURVES or not {"speed_mm_s", "force_n"} <= case.keys() or case.get("refused"):
             continue
         asset = page.read_asset(path.parent / cases["asset"], case["model"])
         known = [asset[0]["conditions"][element["condition"]] for element in asset[1]["at"]]

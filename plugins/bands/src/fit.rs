@@ -10,9 +10,9 @@
 //!
 //! The solution is the spectrum with the largest entropy among all spectra with the recording's
 //! energies. The fit finds this spectrum with the Levenberg–Marquardt method. Files store the
-//! curve, not the energies, so a player does not have to solve equations. Only the fit has to deal
-//! with energies that no spectrum has. (Rounding can cause such energies, because bands share
-//! bins.) The window of a measurement blurs the spectrum. Therefore, the voice's spectrum is
+//! curve, not the energies, so a player does not have to solve equations. Rounding can give
+//! energies that no spectrum has, because bands share bins. Only the fit has to deal with such
+//! energies. The window of a measurement blurs the spectrum. Therefore, the voice's spectrum is
 //! sharpened until a measurement shows the stated spectrum.
 //!
 //! We compared this fit with a maximum-likelihood fit to the bins, computed in Python (Whittle's

@@ -54,8 +54,8 @@ pub(crate) struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 
-/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows. Only
-/// frequencies count that are within the band when the finger moves at this speed.
+/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows. Counts only
+/// frequencies that are within the band when the finger moves at this speed.
 ///
 /// # Errors
 /// Returns an error if the number of grey values is not a multiple of the width, or if the map has

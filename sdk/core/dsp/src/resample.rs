@@ -77,10 +77,10 @@ impl Resampler {
     /// Makes a converter as [`Self::new`] does, but for a source whose rate is fixed at `from_hz`,
     /// such as a filter.
     ///
-    /// Near half the source's rate, a conversion to a high rate removes up to half of the source's
-    /// power. This converter removes the same power if the two rates are equal ([`OwnRate`]) or if
-    /// `to_hz` is the lower rate. So the level is the same at all rates that can represent the
-    /// source's frequencies.
+    /// Near half the source's rate, a conversion to a high rate removes up to half of the power.
+    /// This converter also removes the same part of the power if the two rates are equal
+    /// ([`OwnRate`]) or if `to_hz` is the lower rate. So the level is the same at all rates that
+    /// can represent the source's frequencies.
     ///
     /// # Errors
     /// The errors of [`Self::new`].

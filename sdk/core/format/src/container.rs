@@ -29,8 +29,8 @@ impl Asset {
         Self::from_bytes_with_findings(bytes, limits).map(|(asset, _)| asset)
     }
 
-    /// Reads an asset from bytes, within the given limits. Also returns all findings, which are no
-    /// errors.
+    /// Reads an asset from bytes, within the given limits. Also returns all findings; none of them
+    /// is an error.
     ///
     /// # Errors
     /// The errors of [`Self::from_bytes`].

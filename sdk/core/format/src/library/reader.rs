@@ -220,8 +220,9 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
-    /// Reads what the library states about a texture besides its manifest. The entry must come from
-    /// this library. Reads the page with the spectra of its leaf, unless it is in the cache.
+    /// Reads what the library states about a texture in addition to the texture's manifest. The
+    /// entry must come from this library. Reads the page with the spectra of its leaf, unless it is
+    /// in the cache.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.
@@ -246,13 +247,14 @@ impl<S: LibrarySource> Library<S> {
         Ok(spectra)
     }
 
-    /// Returns all entries, sorted by name. Many pages are read at once, and decoded one at a time.
+    /// Returns all entries, sorted by name. One read covers many pages, and the pages are decoded
+    /// one after another.
     pub fn entries(&self) -> Entries<'_, S> {
         let ahead = Ahead::default();
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0, ahead }
     }
 
-    /// Returns all entries with their descriptions, sorted by name. Many pages are read at once.
+    /// Returns all entries with their descriptions, sorted by name. One read covers many pages.
     pub fn described(&self) -> Described<'_, S> {
         let (entries, ahead) = (self.entries(), Ahead::default());
         Described { entries, ahead, spectra: Vec::new(), leaf: None }

@@ -71,7 +71,7 @@ impl Writer {
     /// Adds a texture that was checked before, perhaps by another thread.
     ///
     /// # Errors
-    /// The errors of [`Self::add`], except those of an asset that is not valid.
+    /// Returns the errors of [`Self::add`], except the error for an asset that is not valid.
     pub fn add_prepared(
         &mut self,
         name: &str,
@@ -93,9 +93,9 @@ impl Writer {
         self.packer.add(name, asset)
     }
 
-    /// Adds the textures of another library as they are, without reading each of them. `name`
-    /// returns the new name of an entry, or `None` to leave the texture out. The entries come in
-    /// the order of their names.
+    /// Adds the textures of another library unchanged, without unpacking them. `name` returns the
+    /// new name of an entry, or `None` to leave the texture out. The entries come in the order of
+    /// their names.
     ///
     /// The textures are not checked again. [`validate`](crate::library::validate) checks a library
     /// that may be damaged.
@@ -113,7 +113,7 @@ impl Writer {
     ///
     /// # Errors
     /// - A page of the other library cannot be read or breaks a rule.
-    /// - A new name breaks a rule, or is there already, as for [`Self::add`].
+    /// - A new name breaks a rule, or the library already has it, as for [`Self::add`].
     pub fn add_library<S: LibrarySource + Send + 'static>(
         &mut self,
         library: Library<S>,

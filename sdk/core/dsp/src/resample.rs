@@ -83,7 +83,7 @@ impl Resampler {
     /// can represent the source's frequencies.
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn of_own_rate(
         from_hz: f64,
         to_hz: f64,
@@ -102,7 +102,7 @@ impl Resampler {
     /// [`Self::of_own_rate`], otherwise with [`Self::new`].
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn work(
         from_hz: f64,
         to_hz: f64,

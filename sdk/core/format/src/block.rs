@@ -113,7 +113,7 @@ pub(crate) fn decode(
 /// block with several conditions, coded fields take fewer bytes for each later condition.
 ///
 /// # Errors
-/// The errors of [`round_parameters`].
+/// Returns the errors of [`round_parameters`].
 pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, WriteError> {
     let mut bytes = 0;
     let mut coded = Vec::new();

@@ -24,7 +24,7 @@ impl Asset {
     /// Reads an asset from bytes, within the given limits.
     ///
     /// # Errors
-    /// The errors of [`Self::from_bytes`].
+    /// Returns the errors of [`Self::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
         Self::from_bytes_with_findings(bytes, limits).map(|(asset, _)| asset)
     }
@@ -33,7 +33,7 @@ impl Asset {
     /// is an error.
     ///
     /// # Errors
-    /// The errors of [`Self::from_bytes`].
+    /// Returns the errors of [`Self::from_bytes`].
     pub fn from_bytes_with_findings(
         bytes: &[u8],
         limits: &Limits,

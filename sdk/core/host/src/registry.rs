@@ -214,7 +214,7 @@ impl Registry {
     /// otherwise the same as [`Self::add_model`].
     ///
     /// # Errors
-    /// The errors of [`Self::add_model`].
+    /// Returns the errors of [`Self::add_model`].
     pub fn add_motion_model<M: Model<Voice: MotionVoice>>(&mut self) -> Result<(), HostError> {
         self.add_described(Origin::Own, own::motion_model::<M>()?)
     }
@@ -261,7 +261,7 @@ impl Registry {
     /// and version.
     ///
     /// # Errors
-    /// The errors of [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
+    /// Returns the errors of [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
     pub fn add_declared_wasm(
         &mut self,
         name: &str,

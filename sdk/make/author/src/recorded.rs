@@ -49,8 +49,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// The errors of [`segment_take`], and an error if the rate is not a multiple of 10 Hz, not
-    /// above twice the band's highest frequency, or above 192 kHz.
+    /// Returns the errors of [`segment_take`], and an error if the rate is not a multiple of 10 Hz,
+    /// not above twice the band's highest frequency, or above 192 kHz.
     pub fn new(
         take: &Take,
         options: &SpectrumOptions,

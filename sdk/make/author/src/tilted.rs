@@ -32,7 +32,7 @@ const SPEEDS: [f64; 2] = [1.0 / 3.0, 3.0];
 /// segment spectra of each recorded condition.
 ///
 /// # Errors
-/// The errors of [`TextureSpectrum::average`].
+/// Returns the errors of [`TextureSpectrum::average`].
 pub(crate) fn conditions(
     recorded: &[ConditionSpectrum],
     parts: &[Vec<SegmentSpectra>],

@@ -50,7 +50,7 @@ impl BuildsMerge {
     ///
     /// # Errors
     /// - A folder has no report, or a file cannot be read or written.
-    /// - The errors of [`LibraryMerge::run`].
+    /// - Returns the errors of [`LibraryMerge::run`].
     pub fn run(&self, output: &Path, name: &str) -> Result<Report, BuildError> {
         let builds = self.folders.iter().map(|(folder, prefix)| Built::open(folder, prefix));
         let builds = builds.collect::<Result<Vec<_>, _>>()?;

@@ -209,8 +209,8 @@ fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, Exchan
 /// models, motion and seed.
 ///
 /// # Errors
-/// The errors of [`export`]. Also an error if the format stores assets and not the vibration that
-/// they play.
+/// Returns the errors of [`export`]. Also an error if the format stores assets and not the
+/// vibration that they play.
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,

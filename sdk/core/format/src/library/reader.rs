@@ -72,7 +72,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the default [`Limits`].
     ///
     /// # Errors
-    /// The errors of [`Library::open`].
+    /// Returns the errors of [`Library::open`].
     pub fn open_source(source: S) -> Result<Self, LibraryError> {
         Self::open_source_with(source, Limits::default())
     }
@@ -80,7 +80,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the given limits.
     ///
     /// # Errors
-    /// The errors of [`Library::open`].
+    /// Returns the errors of [`Library::open`].
     pub fn open_source_with(source: S, limits: Limits) -> Result<Self, LibraryError> {
         let mut opening = Opening::new(limits);
         loop {
@@ -160,7 +160,7 @@ impl<S: LibrarySource> Library<S> {
     /// Reads the entry of a texture that the library should have.
     ///
     /// # Errors
-    /// The errors of [`Self::get`].
+    /// Returns the errors of [`Self::get`].
     pub fn needed(&self, name: &str) -> Result<Entry, LibraryError> {
         let absent = || LibraryError::Absent { name: name.to_owned(), nearest: self.nearest(name) };
         self.entry(name)?.ok_or_else(absent)
@@ -213,7 +213,7 @@ impl<S: LibrarySource> Library<S> {
     /// Reads the texture of an entry, which must come from this library.
     ///
     /// # Errors
-    /// The errors of [`Self::get`].
+    /// Returns the errors of [`Self::get`].
     pub fn read(&self, entry: &Entry) -> Result<Vec<u8>, LibraryError> {
         let ranges = self.index.asset_ranges(entry).into_iter();
         let parts: Result<Vec<_>, _> = ranges.map(|range| self.read_range(range)).collect();

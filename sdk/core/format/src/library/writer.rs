@@ -153,7 +153,7 @@ impl MemoryWriter {
     /// Starts a library. `name` may be empty.
     ///
     /// # Errors
-    /// The errors of [`Writer::create`].
+    /// Returns the errors of [`Writer::create`].
     pub fn new(name: &str) -> Result<Self, LibraryError> {
         Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
@@ -176,7 +176,7 @@ impl MemoryWriter {
     /// Adds a texture, as [`Writer::add`] does.
     ///
     /// # Errors
-    /// The errors of [`Writer::add`].
+    /// Returns the errors of [`Writer::add`].
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.0.add(name, asset)
     }
@@ -184,7 +184,7 @@ impl MemoryWriter {
     /// Returns the library's bytes.
     ///
     /// # Errors
-    /// The errors of [`Writer::finish`].
+    /// Returns the errors of [`Writer::finish`].
     pub fn finish(self) -> Result<(PackSummary, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;

@@ -1,5 +1,6 @@
 //! Friction map: grey values over a surface, where 0 is the lowest and 255 the highest friction.
-//! Electroadhesion displays play such maps. For example, TanvasTouch takes them as 8-bit PNG.
+//! Electroadhesion displays play such maps. For example, TanvasTouch displays read such maps as
+//! 8-bit PNG.
 //!
 //! Neighbouring pixels are `pitch_mm` apart. The first row is at the top. The map repeats beyond
 //! its edges. Between pixels, the friction is interpolated by a cubic (Catmull and Rom), so that a

@@ -209,7 +209,7 @@ fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, Exchan
 /// models, motion and seed.
 ///
 /// # Errors
-/// Returns the errors of [`export`]. Also an error if the format stores assets and not the
+/// Returns the errors of [`export`]. Also returns an error if the format stores assets and not the
 /// vibration that they play.
 pub fn export_scene(
     scene: &SceneSound<'_>,

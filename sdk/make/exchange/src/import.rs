@@ -213,7 +213,7 @@ fn mapped(
 /// Reads a file as a recording. [`import`] does this before it fits models.
 ///
 /// # Errors
-/// Returns the errors of [`import`]. Also an error if the file does not contain a signal.
+/// Returns the errors of [`import`]. Also returns an error if the file does not contain a signal.
 pub fn recording_of(
     file: &str,
     bytes: &[u8],

@@ -136,7 +136,7 @@ pub struct ByHandAt {
 /// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// Returns the errors of [`make`]. There is also an error if there is no model or no condition, or
+/// Returns the errors of [`make`]. Also returns an error if there is no model or no condition, or
 /// if only some conditions have a speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;

@@ -143,8 +143,8 @@ impl SampleSource {
     /// between the two times.
     ///
     /// The speed is negative while the position decreases. An unknown position counts as 0. If the
-    /// place is unknown, the model receives a path along x. Numbers are clamped to the ranges of
-    /// the model ABI.
+    /// place is unknown, the model receives places along the x axis. Numbers are clamped to the
+    /// ranges of the model ABI.
     ///
     /// # Errors
     /// Returns an error if a number is not finite, or the model refuses the motion. The source then

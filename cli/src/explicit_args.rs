@@ -1,5 +1,5 @@
-//! Parsed arguments, with the names of the arguments that the user gave. An argument that has its
-//! default value was not given.
+//! Parsed arguments, with the names of the arguments that the user gave. Defaults and environment
+//! variables do not count as given.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};

@@ -1,5 +1,5 @@
-//! The finger's motion while a scene plays. It comes either from input lines, which a thread reads
-//! and passes to the playing loop without a lock, or from a finger on a page.
+//! The finger's motion while a scene plays. It comes either from input lines or from a finger on a
+//! page. A thread reads the lines and passes them to the playing loop without a lock.
 
 use std::io::BufRead;
 use std::thread;

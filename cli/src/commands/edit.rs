@@ -1,5 +1,5 @@
-//! Edits metadata and extensions by writing the asset again. Refuses an asset with parts that this
-//! version would not write again, such as entries that nothing refers to.
+//! Edits metadata and extensions, and writes the asset again. Refuses an asset if this version
+//! would lose a part of it when writing, such as an entry that the manifest does not name.
 
 use std::path::{Path, PathBuf};
 

@@ -70,8 +70,8 @@ const MAX_STEPS: f64 = 255.0;
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
 /// Largest distance, dB, of a band below the loudest band, and of a knot below the highest knot. A
-/// band without energy is placed at this distance. The measure of band errors has the same limit,
-/// because it adds 1e-12 of the largest energy to every band.
+/// band without energy gets this level below the loudest band. The measure of band errors has the
+/// same limit, because it adds 1e-12 of the largest energy to every band.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {

@@ -1,5 +1,6 @@
 //! Friction map: grey values over a surface, where 0 is the lowest and 255 the highest friction.
-//! Electroadhesion displays play such maps. For example, TanvasTouch takes them as 8-bit PNG.
+//! Electroadhesion displays play such maps. For example, TanvasTouch displays read such maps as
+//! 8-bit PNG.
 //!
 //! Neighbouring pixels are `pitch_mm` apart. The first row is at the top. The map repeats beyond
 //! its edges. Between pixels, the friction is interpolated by a cubic (Catmull and Rom), so that a
@@ -54,8 +55,8 @@ pub(crate) struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 
-/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows. Only
-/// frequencies count that are within the band when the finger moves at this speed.
+/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows. Counts only
+/// frequencies that are within the band when the finger moves at this speed.
 ///
 /// # Errors
 /// Returns an error if the number of grey values is not a multiple of the width, or if the map has

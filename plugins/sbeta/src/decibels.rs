@@ -1,5 +1,5 @@
-//! The distance in decibels between a beta density and the points of a fit, and the density that is
-//! nearest to the points, in closed form.
+//! The distance in decibels between a beta density and the points of a fit, and a closed form for
+//! the density that is nearest to the points.
 //!
 //! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns α, β
 //! and scale. Therefore, the nearest density is the solution of a least-squares problem in which α

@@ -2,13 +2,13 @@
 //! fit minimises squared differences of decibels or of magnitudes. (The paper uses fminsearch on
 //! ten peaks and does not state the cost function.)
 //!
-//! The paper's method corresponds to `error=magnitude`, `lower_bound=1`, `bins=0`, `refit=never`. It
-//! has two weaknesses: a fit of squared magnitudes follows only the strongest peaks, and peaks give
-//! no information about the frequencies between them. Each cell of the table has three errors in dB:
-//! the median, the mean and the largest. The columns headed "recordings" are about 32 third-party
-//! recordings. Of these, 24 have the band from 20 to 1000 Hz (at most half the sample rate), and
-//! eight the band from 60 to 1000 Hz. The columns headed "simulated" are about 15 simulated
-//! recordings (five surfaces, three seeds).
+//! The paper's method corresponds to `error=magnitude`, `lower_bound=1`, `bins=0`, `refit=never`.
+//! It has two weaknesses: a fit of squared magnitudes follows only the strongest peaks, and peaks
+//! give no information about the frequencies between them. Each cell of the table has three errors
+//! in dB: the median, the mean and the largest. The columns headed "recordings" are about 32
+//! third-party recordings. The band of 24 of them is from 20 to 1000 Hz, and the band of the other
+//! eight from 60 to 1000 Hz. A band ends at half the sample rate if that is lower. The columns
+//! headed "simulated" are about 15 simulated recordings (five surfaces, three seeds).
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|

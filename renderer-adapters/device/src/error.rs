@@ -63,7 +63,7 @@ pub enum DeviceError {
         frames: u64,
         advice: String,
     },
-    /// A complete message, which a library or the process that holds the device has written.
+    /// A complete message from a library, or from the process that holds the device.
     #[error("{0}")]
     Message(String),
     /// The device was removed, or its driver failed.

@@ -131,7 +131,7 @@ impl std::fmt::Display for Note {
 }
 
 /// The adapters that a program has found. An output and an input may have the same id and the same
-/// short name. For example, the two directions of a sound card do.
+/// short name. An example is a sound card, which is both an output and an input.
 #[derive(Debug, Clone, Default)]
 pub struct Devices {
     entries: Vec<AdapterEntry>,

@@ -97,7 +97,7 @@ fn reported(report: &Report) -> Value {
     })
 }
 
-/// Sets the fields of limits that a question names.
+/// Sets those fields of a struct of limits that a question names.
 macro_rules! limited {
     ($limits:expr, $given:expr; $($name:ident),*) => {{
         let mut limits = $limits;

@@ -1,4 +1,4 @@
-//! Outputs with several channels, of which the user selects the ones that play the texture. The
+//! Outputs with several channels. The user selects the channels that play the texture. The
 //! interleaved frames go to a sound card or to a WAV file, or are discarded.
 //!
 //! For example, a DualSense controller connected by a cable is a sound card with four channels.

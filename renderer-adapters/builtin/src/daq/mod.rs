@@ -13,11 +13,11 @@
 //!   stopped writing samples. The watchdog also sets the output to zero if a call of the driver
 //!   does not return for 0.3 s.
 //! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output.
-//! - If a stream does not begin at zero, the adapter outputs a ramp of `ramp_ms` *before its first*
-//!   sample. If the stream does not end at zero, the adapter outputs such a ramp *after its last*
-//!   sample. The ramp is the mirrored stream, multiplied by a weight that falls to zero away from
-//!   the stream. Therefore, the ramp keeps the frequency of the carrier. The samples of the stream
-//!   are never changed.
+//! - If a stream does not begin at zero, the adapter outputs a ramp of `ramp_ms` *before* the first
+//!   sample of the stream. If the stream does not end at zero, the adapter outputs such a ramp
+//!   *after* the last sample. The ramp is the mirrored stream, multiplied by a weight that falls to
+//!   zero away from the stream. Therefore, the ramp keeps the frequency of the carrier. The samples
+//!   of the stream are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
 //! [`DaqInput`] records the analog inputs of a card, in volts.

@@ -4,8 +4,8 @@
 //! The adapter refuses a sample over the limit, and samples whose mean exceeds the direct-voltage
 //! limit. In addition, the driver refuses samples beyond its own channel limits. The watchdog
 //! detects an underflow, because otherwise the last voltage would stay at the output if the writer
-//! hangs. However a session ends, its last step is an unclocked write of zero. If this write fails,
-//! it is repeated, the last time after a reset of the card.
+//! hangs. The last step of every session is an unclocked write of zero, even after an error. If
+//! this write fails, it is repeated. Before the last repetition, the card is reset.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

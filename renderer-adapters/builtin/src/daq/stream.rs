@@ -3,8 +3,8 @@
 //!
 //! The device computes the number of waiting samples from the number of samples that were output.
 //! It does not use the free space that the driver reports, because the driver counts samples as
-//! gone as soon as they are in the card's memory. The ramp before a stream is not counted. With a
-//! live motion, the buffer holds 20 ms (`live_default` of `buffer_ms`).
+//! gone as soon as they are in the card's memory. The count does not include the ramp before a
+//! stream. With a live motion, the buffer holds 20 ms (`live_default` of `buffer_ms`).
 
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;

@@ -19,7 +19,7 @@ use std::time::Duration;
 pub const CONFIRM: Duration = Duration::from_millis(500);
 /// Time between two printed warnings.
 pub const EVERY: Duration = Duration::from_millis(1_000);
-/// Longest time that a single request may take, without waiting for the buffer and the ramp. A
+/// Longest time for a single request. It does not include the wait for the buffer and the ramp. A
 /// write with a longer timeout is sent as several requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
 /// Longest time for opening a device, because a driver may take seconds to load.
@@ -38,8 +38,8 @@ const ATTEMPT: Duration = Duration::from_millis(5_000);
 /// The longest times for which the player waits, for one device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Waits {
-    /// Longest time from writing the last sample to an output at zero, if nothing fails. This time
-    /// is the duration of the device's buffer and ramp.
+    /// Longest time from writing the last sample until the output is at zero, if nothing fails.
+    /// This time is the duration of the device's buffer and ramp.
     pub to_zero: Duration,
 }
 
@@ -183,8 +183,8 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Returns the actions for an event. `now` is the current time, counted from any moment that is
-    /// the same for all calls.
+    /// Returns the actions for an event. `now` is the current time since some fixed moment, which
+    /// must be the same in all calls.
     pub fn on(&mut self, event: Event, now: Duration) -> Vec<Action> {
         let mut actions = match event {
             Event::Asked(patience) => self.asked(patience, now),

@@ -1,5 +1,6 @@
-//! The guardian: a second process that holds the output of a display that a finger touches. However
-//! the app's process ends, the guardian ensures that no voltage stays at the output.
+//! The guardian: a second process that holds the output of a display that a finger touches. The
+//! guardian ensures that no voltage stays at the output when the app's process ends, even if the
+//! process crashes or is killed.
 //!
 //! A signal that kills or stops the app does not reach the guardian. The guardian is in its own
 //! process group and receives no signals from the terminal's keys. When the pipe from the app

@@ -1,4 +1,4 @@
-//! Compares the answer of a reader with what is expected.
+//! Compares the answer of a reader with the expected answer.
 
 use serde::Deserialize;
 use serde_json::Value;

@@ -4,10 +4,10 @@ use std::process::Command;
 
 use super::ConformanceError;
 
-/// The command line of a reader, with places for what differs from file to file.
+/// The command line of a reader, with placeholders for values that differ from file to file.
 ///
 /// Words are separated by white space. Text between `'` or between `"` belongs to one word. There
-/// are no other special characters: no shell reads the line.
+/// are no other special characters, because no shell reads the line.
 ///
 /// ```
 /// use htex_check::conformance::CommandLine;
@@ -57,7 +57,7 @@ impl CommandLine {
         &self.words
     }
 
-    /// Returns the line as it was given.
+    /// Returns the original text of the line.
     pub fn text(&self) -> &str {
         &self.text
     }

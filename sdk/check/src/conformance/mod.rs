@@ -1,13 +1,13 @@
-//! Runs a third-party reader on the conformance files of `spec`, and counts what it gets right.
+//! Runs a third-party reader on the conformance files of `spec`, and counts the right answers.
 //!
-//! The reader is a program in any language. The runner starts it once for each file, and compares
-//! the JSON object that it prints with what the conformance files say. `spec/conformance-protocol.md`
-//! specifies the object.
+//! The reader is a program in any language. The runner starts the reader once for each file, and
+//! compares the JSON object that the reader prints with the expected values in the conformance
+//! files. `spec/conformance-protocol.md` specifies the object.
 //!
-//! The reader may hang, print without end, or start programs of its own. Each run therefore has a
-//! time limit and a limit of output, and is a process group of its own, which is killed at the end
-//! ([`run`]). Systems other than Unix have no process groups; there only the reader itself is
-//! killed.
+//! The reader may hang, print without end, or start programs of its own. Therefore each run has a
+//! limit of time and of output. It also has its own process group, which the runner kills at the
+//! end ([`run`]). Systems other than Unix have no process groups, so the runner kills only the
+//! reader itself.
 #![forbid(unsafe_code)]
 
 mod answer;
@@ -45,7 +45,7 @@ impl Part {
     pub const ALL: [Self; 6] =
         [Self::Assets, Self::Libraries, Self::Scenes, Self::Recordings, Self::Baked, Self::Playing];
 
-    /// Returns the name, as the reader gets it for `{part}`.
+    /// Returns the name of the part, which replaces `{part}` in the reader's command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Assets => "assets",
@@ -57,7 +57,7 @@ impl Part {
         }
     }
 
-    /// Returns the folder of the files, in `spec`.
+    /// Returns the name of the part's folder in `spec`.
     pub const fn folder(self) -> &'static str {
         match self {
             Self::Assets => "conformance",
@@ -70,7 +70,7 @@ impl Part {
     }
 }
 
-/// What a program is, by the conformance classes of the specification.
+/// A conformance class of the specification: what a program must be able to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Class {
@@ -127,13 +127,14 @@ names! {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConformanceError {
-    /// The command is not one that can be started with a file.
+    /// The command cannot be started with a file.
     #[error("the command `{command}` {problem}")]
     Command { command: String, problem: String },
-    /// The folder has no conformance files, or not of this part.
+    /// The folder has no conformance files, or none of the requested part.
     #[error("{}: {problem}; give the folder `spec` of htex, or the one of a release", path.display())]
     Files { path: PathBuf, problem: String },
-    /// A conformance file cannot be read, or a question cannot be written.
+    /// A conformance file cannot be read, or the file with a question for the reader cannot be
+    /// written.
     #[error("{}: {error}", path.display())]
     File { path: PathBuf, error: std::io::Error },
     /// Somebody stopped the run.

@@ -14,26 +14,27 @@ use super::{Class, Part};
 /// Maximum number of differences that the text lists.
 const MOST_LISTED: usize = 50;
 
-/// What a reader gets right.
+/// The result of running a reader on the conformance files.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Report {
     /// The command line of the reader.
     pub command: String,
-    /// Whether the reader passes everything that it was asked.
+    /// Whether the reader answered every question correctly.
     pub passed: bool,
     /// Number of runs.
     pub runs: usize,
     pub matrix: Matrix,
     pub differences: Vec<Difference>,
-    /// Files that the reader was not asked, because its command has no `{options}`.
+    /// Files that the runner left out because they need options, and the command has no
+    /// `{options}`.
     pub left_out: Vec<Left>,
 }
 
 /// Counts by class and part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Matrix {
-    /// The parts that have files: the columns.
+    /// The columns of the matrix: the parts that have files.
     pub parts: Vec<Part>,
     pub rows: Vec<Row>,
 }
@@ -42,29 +43,30 @@ pub struct Matrix {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     pub class: Class,
-    /// By part, without the parts that do not concern the class.
+    /// The count of each part. Parts that do not concern the class are missing.
     pub counts: BTreeMap<Part, Count>,
 }
 
-/// How many files, or motions of a player, pass.
+/// Number of tests that passed, and number of all tests. A test is a file or, for a player, a
+/// motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Count {
     pub passed: usize,
     pub all: usize,
 }
 
-/// What differs in a file.
+/// A file for which the reader's answer is wrong.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Difference {
     pub part: Part,
     pub file: String,
-    /// The classes that do not pass because of it.
+    /// The classes that fail because of the wrong answer.
     pub classes: Vec<Class>,
-    /// What the reader says, and what it has to say.
+    /// States the reader's answer and the expected answer.
     pub message: String,
 }
 
-/// A file that the reader was not asked.
+/// A file that the runner left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Left {
     pub part: Part,
@@ -118,7 +120,7 @@ impl Report {
         }
     }
 
-    /// Returns the counts of all rows together.
+    /// Returns the sums of the counts of all rows.
     pub fn total(&self) -> Count {
         let all = self.matrix.rows.iter().flat_map(|row| row.counts.values());
         all.fold(Count::default(), |sum, one| Count {
@@ -146,7 +148,7 @@ impl Report {
         text
     }
 
-    /// Returns a badge as SVG: how much passes, green if everything does.
+    /// Returns a badge as SVG. It shows how many tests passed, and is green if all did.
     pub fn to_badge(&self) -> String {
         let count = self.total();
         let right = if self.passed { format!("{} passed", count.all) } else { count.to_string() };

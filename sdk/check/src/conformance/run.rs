@@ -14,17 +14,17 @@ use super::report::Report;
 use super::tasks::{Asked, Task, tasks};
 use super::{Class, ConformanceError, Part};
 
-/// What is run, and within which limits.
+/// What to run, and the limits of each run.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Options {
-    /// The folder with the folders of conformance files: `spec` of htex.
+    /// The folder `spec` of htex, which contains the folders of conformance files.
     pub files: PathBuf,
-    /// The parts; those without files are left out.
+    /// The parts to run. Parts without files are left out.
     pub parts: Vec<Part>,
-    /// The classes that are counted.
+    /// The classes to count.
     pub classes: Vec<Class>,
-    /// Longest time of one run.
+    /// Time limit of one run.
     pub time_limit: Duration,
     /// Number of readers that run at the same time.
     pub jobs: NonZero<usize>,
@@ -43,11 +43,10 @@ impl Options {
     }
 }
 
-/// Runs a reader on the conformance files. `stop` is asked every few milliseconds whether the run
-/// has to end early.
+/// Runs a reader on the conformance files. Calls `stop` every few milliseconds, and ends early if
+/// it returns true.
 ///
-/// No process of the reader is left when this function returns, unless it has left the reader's
-/// process group.
+/// Before this function returns, it kills all processes of the reader's process group.
 ///
 /// # Errors
 /// When the folder has no files, when a file cannot be read, when the reader cannot be started, or

@@ -1,4 +1,4 @@
-//! The conformance files: what a reader is asked, and what is expected.
+//! Reads the conformance files: the questions to a reader, and the expected answers.
 
 use std::fs::File;
 use std::io::Read;

@@ -2,8 +2,9 @@
 //!
 //! The levels are the energies in 30 triangular bands from edge to edge of the frequency band, on
 //! the axis [`edge_to_edge`]: the bands of the model Bands at its defaults. Fits to third octaves
-//! would have a smaller third-octave error, but the project judges all models by this error, so no
-//! model is fitted to it. Only the shape counts: the energies of spectrum and model are relative to their sums.
+//! would have a smaller third-octave error. But the project compares all models by this error, so
+//! no model is fitted to third octaves. Only the shape counts: the energies of spectrum and model
+//! are relative to their sums.
 //!
 //! The search is the Levenberg–Marquardt method. It computes derivatives by differences, so a model
 //! has to provide only its power.
@@ -31,7 +32,7 @@ const STRIDE: f64 = 1.0;
 /// Change of a parameter, relative to the parameter or absolute below 1, for its derivative.
 const DIFFERENCE: f64 = 1e-6;
 
-/// The levels that a spectrum has, and to which models are fitted.
+/// The band levels of a spectrum, to which models are fitted.
 ///
 /// ```
 /// use htex_dsp::{Band, decibel_fit::DecibelFit};

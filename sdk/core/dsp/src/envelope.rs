@@ -6,8 +6,8 @@
 //! ms). One window ends every `N / 4` samples. Before the first sample, the stream counts as 0.
 //!
 //! Let `X[k]` be the transform of the windowed samples, and `W` the sum of the squared window. Bin
-//! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`; all bins but the first and the last
-//! count twice. The powers of all bins then add up to the mean square of the windowed samples,
+//! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`. All bins except the first and the
+//! last count twice. The powers of all bins then add up to the mean square of the windowed samples,
 //! divided by the mean square of the window. The result for a block is the mean over the windows
 //! that end in the block. If no window ends in the block, the result of the previous block is
 //! repeated.

@@ -68,8 +68,8 @@ impl RealFft {
         }
     }
 
-    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`; the last bin of an even length is
-    /// counted once instead of twice. The result is `len` times the signal that has this spectrum.
+    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`. If the length is even, the last bin
+    /// has the factor 1 instead of 2. The result is `len` times the signal that has this spectrum.
     /// Missing bins count as zero. Does not allocate.
     pub fn inverse(&mut self, bins: &[Complex<f64>], samples: &mut [f64]) {
         let len = self.len;

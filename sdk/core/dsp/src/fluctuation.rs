@@ -4,7 +4,8 @@
 //! band. A recording also becomes stronger and weaker, several times a second and in many bands
 //! together. [`Fluctuation`] describes this in three ways:
 //!
-//! - the modulation spectrum, by which the power in each third octave rises and falls at 1 to 64 Hz;
+//! - the modulation spectrum: how strongly the power in each third octave rises and falls at 1 to
+//!   64 Hz;
 //! - the kurtosis, which is 3 for Gaussian noise and larger for a signal with bursts or clicks;
 //! - the correlation of band envelopes, which is 0 if the bands fluctuate independently.
 
@@ -17,10 +18,11 @@ use crate::fft::RealFft;
 use crate::fidelity::THIRD_OCTAVES;
 use crate::window::hann_periodic;
 
-/// Shortest signal, seconds. In a shorter one, the lowest modulation octave has fewer than three
-/// bins.
+/// Length of the shortest signal that can be measured, seconds. In a shorter signal, the lowest
+/// modulation octave would have fewer than three bins.
 pub const LEAST_S: f64 = 3.0;
-/// Longest part of a signal that is measured, seconds: its middle. A minute shows all octaves.
+/// Length of the part of a signal that is measured, seconds. Only the middle of a longer signal is
+/// measured, because a minute is enough for all octaves.
 pub const MOST_S: f64 = 60.0;
 /// Envelopes are computed at a sample rate of about this, hertz, which is above twice the highest
 /// frequency. It is enough for all of them, and takes a tenth of the time at a rate of 20 kHz.
@@ -49,7 +51,7 @@ pub struct Fluctuation {
     /// Kurtosis of the signal between 20 and 1000 Hz; 3 for Gaussian noise.
     pub kurtosis: f64,
     /// Mean Pearson correlation between the amplitude envelopes of four bands (20, 60, 150, 400 and
-    /// 1000 Hz). `None` if fewer than two of them lie in the signal's band.
+    /// 1000 Hz). `None` if fewer than two of these bands lie in the signal's band.
     pub envelope_correlation: Option<f64>,
 }
 
@@ -57,10 +59,11 @@ impl Fluctuation {
     /// Measures a signal. Perpendicular `axes` are measured together: the power envelope of a band
     /// is the sum of the axes' envelopes.
     ///
-    /// For each third octave from 20 Hz, the power envelope is the squared magnitude of the band's
-    /// analytic signal, which a sharp filter in the FFT of the whole signal gives, divided by its
-    /// mean. Its mean is removed, and a Hann window over the whole length is applied. The power
-    /// spectrum is averaged over the bins of each octave.
+    /// For each third octave from 20 Hz, a sharp filter in the FFT of the whole signal gives the
+    /// band's analytic signal. The squared magnitude of this signal is the power envelope. The
+    /// envelope is divided by its mean, the mean is subtracted, and a Hann window over the whole
+    /// length is applied. The power spectrum of the result is averaged over the bins of each octave
+    /// of modulation.
     ///
     /// `None` if the signal is shorter than [`LEAST_S`], silent, or not finite, or if half its
     /// sample rate is below 128 Hz.
@@ -126,18 +129,22 @@ impl Fluctuation {
     }
 }
 
-/// Ranges of modulation, hertz, in which [`envelope_excess`] sums what exceeds stationary noise.
+/// Ranges of modulation frequencies, hertz, in which [`envelope_excess`] sums the excess over
+/// stationary noise.
 pub const EXCESS_HZ: [[f64; 2]; 2] = [[1.0, 8.0], [8.0, 32.0]];
-/// Shortest signal of [`envelope_excess`], seconds: the slowest modulation once.
+/// Length of the shortest signal that [`envelope_excess`] can measure, seconds: one period of the
+/// slowest modulation.
 pub const LEAST_EXCESS_S: f64 = 1.0;
 /// Number of bands of [`envelope_excess`].
 pub const EXCESS_BANDS: usize = WIDE_HZ.len() - 1;
 
-/// How much the amplitude envelope of a band varies more than that of stationary Gaussian noise
-/// with the same spectrum. All numbers are variances relative to the square of the mean envelope.
+/// The excess fluctuation of a band: how much more its amplitude envelope varies than the envelope
+/// of stationary Gaussian noise with the same spectrum. All numbers are variances relative to the
+/// square of the mean envelope.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnvelopeExcess {
-    /// The measured variance less the expected one, in each range of [`EXCESS_HZ`]; may be below 0.
+    /// The measured variance minus the expected variance, in each range of [`EXCESS_HZ`]; may be
+    /// below 0.
     pub excess: [f64; 2],
     /// The square of the standard error of `excess` for stationary Gaussian noise.
     pub error: [f64; 2],
@@ -145,13 +152,15 @@ pub struct EnvelopeExcess {
     pub power: f64,
 }
 
-/// Measures the excess in the bands from 20 to 60, 150, 400 and 1000 Hz. Bands above half the
-/// sample rate are `None`. Of a signal longer than [`MOST_S`], the middle is measured.
+/// Measures the excess fluctuation in four bands, with the edges 20, 60, 150, 400 and 1000 Hz.
+/// Bands above half the sample rate are `None`. If a signal is longer than [`MOST_S`], only its
+/// middle is measured.
 ///
 /// The expectation is exact for Gaussian noise that is periodic in the length of the signal. If ρ
 /// is the correlation of the band's analytic signal with itself at a delay, the envelopes at that
-/// delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of their mean
-/// (D. Middleton, 1948). So no random copies of the signal are needed.
+/// delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of their mean (D.
+/// Middleton, 1948). So the expectation is computed from a formula, and not from random signals
+/// with the same spectrum.
 ///
 /// `None` if the signal is shorter than [`LEAST_EXCESS_S`], silent, or not finite, or if half its
 /// sample rate is below 128 Hz.

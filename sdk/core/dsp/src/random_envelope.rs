@@ -2,11 +2,11 @@
 //!
 //! The envelope is `exp(x)`, where x is Gaussian noise with the frequencies 0.5 to 32 Hz. Two
 //! standard deviations say how strong the slow part (0.5 to 8 Hz) and the fast part (8 to 32 Hz) of
-//! x are. The mean square of the envelope is 1, so the envelope changes no level and no power of a
-//! band wider than the frequencies of the envelope.
+//! x are. The mean square of the envelope is 1. So the envelope does not change the level, or the
+//! power in a band that is wider than the frequencies of the envelope.
 //!
-//! The envelope is computed 500 times a second, whatever the sample rate is, and interpolated
-//! linearly between. Therefore it costs little, and is the same function of time at every rate.
+//! At every sample rate, the envelope is computed 500 times a second, and interpolated linearly
+//! between these times. Therefore it costs little, and is the same function of time at every rate.
 
 use core::f64::consts::LN_10;
 
@@ -59,9 +59,9 @@ struct Part {
 }
 
 impl RandomEnvelope {
-    /// Makes an envelope for samples at `rate_hz`. The slow and the fast part of its logarithm have
-    /// the standard deviations `strength_db`, decibels, which count as at most 12. A rate that is
-    /// not positive counts as 500 Hz.
+    /// Makes an envelope for samples at `rate_hz`. `strength_db` gives the standard deviations of
+    /// the slow and the fast part of its logarithm, decibels. Values above 12 are reduced to 12. A
+    /// rate that is not positive counts as 500 Hz.
     pub fn new(strength_db: [f64; 2], rate_hz: f64, seed: u64) -> Self {
         // Not `clamp`, which would keep NaN.
         #[allow(clippy::manual_clamp)]

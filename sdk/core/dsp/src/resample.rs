@@ -77,13 +77,13 @@ impl Resampler {
     /// Makes a converter as [`Self::new`] does, but for a source whose rate is fixed at `from_hz`,
     /// such as a filter.
     ///
-    /// Near half the source's rate, a conversion to a high rate removes up to half of the source's
-    /// power. This converter removes the same power if the two rates are equal ([`OwnRate`]) or if
-    /// `to_hz` is the lower rate. So the level is the same at all rates that can represent the
-    /// source's frequencies.
+    /// Near half the source's rate, a conversion to a high rate removes up to half of the power.
+    /// This converter also removes the same part of the power if the two rates are equal
+    /// ([`OwnRate`]) or if `to_hz` is the lower rate. So the level is the same at all rates that
+    /// can represent the source's frequencies.
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn of_own_rate(
         from_hz: f64,
         to_hz: f64,
@@ -102,7 +102,7 @@ impl Resampler {
     /// [`Self::of_own_rate`], otherwise with [`Self::new`].
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn work(
         from_hz: f64,
         to_hz: f64,

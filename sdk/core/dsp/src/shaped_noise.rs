@@ -285,7 +285,7 @@ impl ShapedNoise {
     ///
     /// If no change is in progress, the spectrum is computed at once. Otherwise
     /// [`Self::render_with`] computes the spectrum at the end of the change in progress. If several
-    /// changes were requested meanwhile, only the last request counts. `make` receives
+    /// changes were requested by then, only the last request counts. `make` receives
     /// [`Self::component_hz`] and writes the magnitude at each frequency, in any scale. Negative
     /// and non-finite values count as zero. Does not allocate.
     ///

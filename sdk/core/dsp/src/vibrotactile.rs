@@ -7,9 +7,9 @@
 //! 1962–1966, as summarised by Gescheider & Verrillo 1979). Above 250 Hz, the threshold rises by 9
 //! dB per octave (Verrillo 1966, *Psychonomic Science* 4, 135–136). The smallest threshold is −20
 //! dB re 1 µm, i.e. 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust.
-//! Soc. Am.* 84, 1680–1694). The thresholds of different people differ by some 10 dB. Where the
-//! Pacinian channel determines the threshold, the threshold is higher for a smaller contact: each
-//! halving of the contact's area raises it by 3 dB.
+//! Soc. Am.* 84, 1680–1694). The thresholds of different people differ by some 10 dB. At
+//! frequencies at which the Pacinian channel determines the threshold, each halving of the
+//! contact's area raises the threshold by 3 dB.
 //!
 //! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
 //! The smallest threshold and the values of [`Skin`] are rounded values, with one or two digits,

@@ -2,9 +2,9 @@
 //!
 //! For each condition, a block contains the stored values of each field. Values are in
 //! little-endian order and have a fixed width, except in packed lists. The length of a list is a
-//! variable-length integer of bincode, which precedes the values of the list. The coded fields of
-//! all conditions follow in one code (`coded.rs`). The layout depends only on the fields in the
-//! manifest. This is the only module that uses bincode.
+//! variable-length integer of bincode, which precedes the values of the list. After that, the block
+//! contains the coded fields of all conditions, as one code (`coded.rs`). The layout depends only
+//! on the fields in the manifest. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -109,11 +109,11 @@ pub(crate) fn decode(
     Ok(flats)
 }
 
-/// Returns how many bytes a flat array takes in a parameter block with only this condition. Coded
-/// fields take fewer bytes at further conditions.
+/// Returns how many bytes a flat array takes in a parameter block with only this condition. In a
+/// block with several conditions, coded fields take fewer bytes for each later condition.
 ///
 /// # Errors
-/// The errors of [`round_parameters`].
+/// Returns the errors of [`round_parameters`].
 pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, WriteError> {
     let mut bytes = 0;
     let mut coded = Vec::new();

@@ -1,10 +1,10 @@
-//! Coded fields: steps that are predicted from the condition before and from the numbers before,
-//! and the errors of the prediction in a range code with adaptive probabilities.
+//! Coded fields. Each step is predicted from the previous condition and from the previous numbers,
+//! and the errors of the prediction are stored in a range code with adaptive probabilities.
 //!
-//! A grid of 405 conditions of the model Bands takes 9.7 bytes for each condition, and 20.1 packed.
-//! The measurements are in `docs/accuracy-and-time.md`.
+//! In a grid of 405 conditions of the model Bands, a condition takes 9.7 bytes if it is coded, and
+//! 20.1 bytes if it is packed. The measurements are in `docs/accuracy-and-time.md`.
 //!
-//! [`FieldCoder`] describes the sequence of decisions once. The same code writes and reads it.
+//! [`FieldCoder`] defines the sequence of decisions, so the same code writes and reads a field.
 
 use crate::range_coder::{Chance, Coder, Decoder, Encoder};
 

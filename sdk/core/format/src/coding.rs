@@ -1,9 +1,10 @@
 //! Coded assets: the same texture in fewer bytes.
 //!
-//! A coded asset requires the extension [`CODED`]. Its fields of 8-bit steps are coded
-//! (`coded.rs`), each condition against the one before, its arrays of conditions are tables
-//! (`table.rs`), and its measures of agreement are rounded to two decimals. Parameters and levels
-//! are the same, so the samples are.
+//! A coded asset requires the extension [`CODED`]. It differs from a plain asset in three ways. Its
+//! fields of 8-bit steps are coded, and each condition is predicted from the previous one
+//! (`coded.rs`). Its arrays of conditions are tables (`table.rs`). Its measures of agreement are
+//! rounded to two decimals. Parameters and levels do not change, so the samples do not change
+//! either.
 
 use crate::manifest::{StoredAs, StoredField};
 use crate::{Asset, CODED, Manifest, Steps};
@@ -17,7 +18,7 @@ impl Manifest {
 }
 
 impl Asset {
-    /// Returns the asset as a coded one. Its parameters, and the samples that it plays, are the
+    /// Returns the asset in the coded form. Its parameters, and the samples that it plays, stay the
     /// same. If there are several conditions, its file is usually much smaller.
     #[must_use]
     pub fn coded(mut self) -> Self {
@@ -41,8 +42,8 @@ impl Asset {
         self
     }
 
-    /// Returns the asset as readers of version 1.0 read it: not coded. Its parameters, and the
-    /// samples that it plays, are the same.
+    /// Returns the asset in the plain form, which readers of version 1.0 can read. Its parameters,
+    /// and the samples that it plays, are the same.
     #[must_use]
     pub fn plain(mut self) -> Self {
         self.manifest.extensions_required.retain(|name| name != CODED);

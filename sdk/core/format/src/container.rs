@@ -24,16 +24,16 @@ impl Asset {
     /// Reads an asset from bytes, within the given limits.
     ///
     /// # Errors
-    /// The errors of [`Self::from_bytes`].
+    /// Returns the errors of [`Self::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
         Self::from_bytes_with_findings(bytes, limits).map(|(asset, _)| asset)
     }
 
-    /// Reads an asset from bytes, within the given limits. Also returns all findings, which are no
-    /// errors.
+    /// Reads an asset from bytes, within the given limits. Also returns all findings; none of them
+    /// is an error.
     ///
     /// # Errors
-    /// The errors of [`Self::from_bytes`].
+    /// Returns the errors of [`Self::from_bytes`].
     pub fn from_bytes_with_findings(
         bytes: &[u8],
         limits: &Limits,

@@ -1,4 +1,4 @@
-//! How strongly a texture becomes stronger and weaker in time.
+//! How strongly a texture fluctuates, i.e. becomes stronger and weaker in time.
 
 use std::fmt;
 

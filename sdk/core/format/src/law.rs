@@ -219,7 +219,8 @@ impl Law {
     /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
     ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///
-    /// This is the law of an asset that states none. New assets state [`Self::for_new_assets`].
+    /// This is also the law of an asset that does not state a law. New assets state
+    /// [`Self::for_new_assets`].
     ///
     /// The assumed exponents of the level depend on the frequency exponent a. Here a is 1, as for a
     /// relief, or 0, as for a surface whose frequencies do not change with the speed.
@@ -242,16 +243,16 @@ impl Law {
     ///
     /// On 20 materials of the Penn Haptic Texture Toolkit, the exponent of a tool's level is 0.03
     /// (median; quartiles 0.01 and 0.05). Three fingers gave -0.07, 1.18 and 2.58. For an unknown
-    /// contact, 0.25 is the mean of 0 for a tool and 1 for a finger, with three tools to one finger,
-    /// since the large public collections were recorded with tools.
+    /// contact, 0.25 is a weighted mean of 0 for a tool (weight 3) and 1 for a finger (weight 1),
+    /// because the large public collections were recorded with tools.
     #[must_use]
     pub fn for_new_assets(quantity: Quantity, contact: Contact) -> Self {
         Self::assumed(quantity, contact).reassumed(quantity, contact)
     }
 
-    /// Returns this law for a new asset, or for another quantity or contact. Assumed exponents are
-    /// replaced by those of [`Self::for_new_assets`], measured exponents are averaged with them, and
-    /// given exponents do not change.
+    /// Returns this law for a new asset, or for another quantity or contact. An assumed exponent is
+    /// replaced by the exponent of [`Self::for_new_assets`], a measured exponent is averaged with
+    /// this exponent, and a given exponent does not change.
     ///
     /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
     /// contact. But if this exponent was measured, a measured exponent of the level over the speed

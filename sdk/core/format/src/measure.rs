@@ -55,7 +55,8 @@ pub struct MeasureRow {
     /// Definition for rendered samples; `None` if the measure is not computed from them.
     pub of_samples: Option<&'static str>,
     /// The case in which a comparison has no value for this measure, such as "for a silent
-    /// reference". Texts put "`None` " before these words. `None` if every comparison has a value.
+    /// reference". Generated documentation writes "`None` " before these words. `None` if every
+    /// comparison has a value.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,

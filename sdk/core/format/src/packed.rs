@@ -1,6 +1,6 @@
 //! Packed lists of steps: the first step, then the differences in a Rice code.
 //!
-//! A step takes two to five bits if it differs little from the step before. Each list has exactly
+//! A step takes two to five bits if it differs little from the previous step. Each list has exactly
 //! one valid code, so that reading and writing a block again gives the same bytes. To make the code
 //! unique, a writer uses the Rice parameter that takes the fewest bits, and a reader refuses any
 //! other.

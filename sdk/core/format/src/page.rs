@@ -1,4 +1,4 @@
-//! Generator of `spec/validation.md` and of the schemas of `spec/schemas` that this crate defines.
+//! Generates `spec/validation.md`, and the schemas of `spec/schemas` that this crate defines.
 
 use htex_base::finding::{FileReport, colophon, rules_page};
 use serde_json::Value;

@@ -139,7 +139,7 @@ pub struct HeldOut {
 }
 
 impl LeftOut {
-    /// Returns the measures of which a left-out error consists.
+    /// Returns the measures that a left-out error contains.
     pub fn measures() -> impl Iterator<Item = Measure> + Clone {
         Measure::ALL.into_iter().filter(|m| m.row().left_out)
     }

@@ -1,8 +1,8 @@
-//! A binary range coder: it writes decisions (yes or no) in a number of bits that depends on how
-//! probable each decision was.
+//! A binary range coder: it writes decisions (yes or no). The more probable a decision was, the
+//! fewer bits it takes.
 //!
-//! All arithmetic is in integers, so every machine writes the same bytes. The encoder ends with the
-//! fewest bytes from which the decisions can be read, and drops zeros at the end, so a sequence of
+//! All arithmetic is in integers, so every machine writes the same bytes. The encoder writes the
+//! fewest bytes from which the decisions can be read, and drops zeros at the end. So a sequence of
 //! decisions has exactly one code.
 
 /// Bits of a probability: 65,536 stands for certainty.

@@ -21,8 +21,8 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file. Reports every broken rule that does not merely follow
-/// from a rule reported before. Never panics, and reads no more than `limits` allow.
+/// Validates the bytes of a `.htex` file. Reports every broken rule, except rules that are broken
+/// only as a consequence of a reported one. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
@@ -34,9 +34,9 @@ pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Re
     Report { valid: asset.is_some(), findings }
 }
 
-/// Returns an asset's manifest as JSON, even if the manifest is not valid. The tables of a coded
-/// asset are replaced by the arrays for which they stand. Returns `None` if the manifest cannot be
-/// unpacked or is not JSON, or if a table stands for no array.
+/// Returns an asset's manifest as JSON, even if the manifest is not valid. In a coded asset, each
+/// table is replaced by the array that it encodes. Returns `None` if the manifest cannot be
+/// unpacked or is not JSON, or if a table does not encode an array.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut manifest = parse_json(&manifest_bytes(bytes, limits)?).ok()?;
     expand_tables(&mut manifest).ok()?;

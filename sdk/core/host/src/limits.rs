@@ -70,10 +70,10 @@ pub struct WasmLimits {
     pub guards: bool,
 }
 
-/// The engine that runs modules. The variants differ in what the engine uses of the process:
-/// threads and signal handlers. While a module is loaded, every engine except `Off` has one thread,
-/// which stops calls at their time limit. A browser runs modules with its own engine; `Off` turns
-/// that engine off, and the other variants turn it on.
+/// The engine that runs modules. The variants differ in the resources of the process that the
+/// engine uses: threads and signal handlers. While a module is loaded, every engine except `Off`
+/// has one thread, which stops calls at their time limit. A browser runs modules with its own
+/// engine; `Off` turns that engine off, and the other variants turn it on.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -88,8 +88,8 @@ pub enum WasmEngine {
     /// Loading a module is an error. No thread, file or handler is created.
     Off,
     /// Modules run without signal handlers. Instead, the engine compares each memory access with
-    /// the memory's bound. Without signal handlers, the engine also does without some measures
-    /// against attacks by speculative execution.
+    /// the memory's bound. Without signal handlers, the engine also lacks some protections against
+    /// attacks by speculative execution.
     Checked,
     /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. If no module
     /// caused a signal, these handlers pass it to the handlers that the process had before.

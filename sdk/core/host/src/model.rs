@@ -80,7 +80,7 @@ impl LoadedModel {
     /// Loads a model as [`Self::from_file`] does, but with other limits for a WASM module.
     ///
     /// # Errors
-    /// The errors of [`Self::from_file`].
+    /// Returns the errors of [`Self::from_file`].
     pub fn from_file_within(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
         Self::from_file_in(path, &Sandbox::new(limits))
     }
@@ -300,7 +300,7 @@ impl LoadedModel {
     /// every requested rate. This function finds out by requesting a much higher rate.
     ///
     /// # Errors
-    /// The errors of [`Self::voice_rate_hz`].
+    /// Returns the errors of [`Self::voice_rate_hz`].
     pub fn has_own_rate(
         &self,
         parameters: &[f64],

@@ -26,7 +26,7 @@ struct TypeVoice<V> {
 /// Creates the model of a type.
 ///
 /// # Errors
-/// The errors of [`RuntimeModelAdapter::new`].
+/// Returns the errors of [`RuntimeModelAdapter::new`].
 pub(crate) fn model<M: Model>() -> Result<RuntimeModelAdapter, HostError> {
     described::<M>(None)
 }
@@ -34,7 +34,7 @@ pub(crate) fn model<M: Model>() -> Result<RuntimeModelAdapter, HostError> {
 /// Creates the model of a type whose voice follows the motion.
 ///
 /// # Errors
-/// The errors of [`RuntimeModelAdapter::new`].
+/// Returns the errors of [`RuntimeModelAdapter::new`].
 pub(crate) fn motion_model<M: Model<Voice: MotionVoice>>() -> Result<RuntimeModelAdapter, HostError>
 {
     described::<M>(Some(M::Voice::set_motion))

@@ -37,7 +37,7 @@ impl LoadedModel {
     /// measures within its main lobe.
     ///
     /// # Errors
-    /// The errors of [`Self::magnitude`].
+    /// Returns the errors of [`Self::magnitude`].
     pub fn read_magnitude(&self, parameters: &[f64], band: Band) -> Result<Vec<f64>, HostError> {
         let grid = band.grid_hz();
         if self.has_lines() || grid.is_empty() {
@@ -71,7 +71,7 @@ impl LoadedModel {
     /// is about 0.7 if all of the power lies there.
     ///
     /// # Errors
-    /// The errors of [`Self::magnitude`].
+    /// Returns the errors of [`Self::magnitude`].
     pub fn played_part(&self, parameters: &[f64], band: Band) -> Result<f64, HostError> {
         if self.has_lines() || self.own_rate(parameters, band)?.is_none() {
             return Ok(1.0);

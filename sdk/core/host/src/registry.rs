@@ -16,10 +16,10 @@ use crate::{builtin, own};
 /// - A model whose file the user named, or that the program added, takes precedence. Among several
 ///   such models, the one that was added first takes precedence.
 /// - Among installed models and the built-in model, only the newest of each major version is
-///   considered, wherever it was found. Among equal versions, the first one in the order of
-///   [`Search`] is used. The order of the places (the plugin folders, the user's folder, this
-///   program) decides between major versions: the major version in the first place is used. If one
-///   place contains several major versions, the newest is used.
+///   considered. It does not matter in which of these places it was found. Among equal versions,
+///   the first one in the order of [`Search`] is used. The order of the places (the plugin folders,
+///   the user's folder, this program) decides between major versions: the major version in the
+///   first place is used. If one place contains several major versions, the newest is used.
 ///
 /// The other models are returned only if their version is requested.
 ///
@@ -214,7 +214,7 @@ impl Registry {
     /// otherwise the same as [`Self::add_model`].
     ///
     /// # Errors
-    /// The errors of [`Self::add_model`].
+    /// Returns the errors of [`Self::add_model`].
     pub fn add_motion_model<M: Model<Voice: MotionVoice>>(&mut self) -> Result<(), HostError> {
         self.add_described(Origin::Own, own::motion_model::<M>()?)
     }
@@ -261,7 +261,7 @@ impl Registry {
     /// and version.
     ///
     /// # Errors
-    /// The errors of [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
+    /// Returns the errors of [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
     pub fn add_declared_wasm(
         &mut self,
         name: &str,

@@ -13,9 +13,9 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 const FOLDER: &str = "htex/plugins";
 
 /// The places to search for models, in order of precedence: `files`, models embedded in an asset,
-/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. Within `dirs` and the places
-/// after it, a newer version takes precedence over an older version with the same major version,
-/// wherever they were found ([`Registry`]).
+/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version
+/// takes precedence over an older version with the same major version, even if the older version is
+/// in an earlier place ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};

@@ -1,11 +1,12 @@
-//! For targets other than WASM that have no standard library, such as microcontrollers. On these
-//! targets, programs call models only through the Rust traits.
+//! Replaces the parts of the standard library that this crate needs, on targets that have no
+//! standard library and are not WASM, such as microcontrollers. On these targets, programs call
+//! models only through the Rust traits.
 
 use core::cell::RefMut;
 use core::marker::PhantomData;
 
 /// A lock that can never be acquired, because this crate has no lock for targets without the
-/// standard library. Callers therefore compute the value that the lock would share anew each time.
+/// standard library. Callers therefore compute a value each time instead of sharing it.
 pub struct Lock<T>(PhantomData<fn() -> T>);
 
 impl<T> Lock<T> {

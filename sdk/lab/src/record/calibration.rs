@@ -51,7 +51,7 @@ impl Calibration {
     /// messages name `path`.
     ///
     /// # Errors
-    /// The errors of [`Self::read`].
+    /// Returns the errors of [`Self::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, LabError> {
         in_calibration(path, Self::from_text(path, text))
     }

@@ -94,11 +94,11 @@ pub struct Coverage {
     pub on_target: f64,
     /// Share of time in which the finger slides.
     pub sliding: f64,
-    /// Share of time in which the speed meets the condition that [`Self::on_target`] describes.
-    /// Absent without a target or a measured speed.
+    /// Share of time in which the speed meets its condition (see [`Self::on_target`]). Absent
+    /// without a target or a measured speed.
     pub speed: Option<f64>,
-    /// Share of time in which the normal force meets the condition that [`Self::on_target`]
-    /// describes. Absent without a target or a measured force.
+    /// Share of time in which the normal force meets its condition (see [`Self::on_target`]).
+    /// Absent without a target or a measured force.
     pub force: Option<f64>,
     /// Number of complete sweeps.
     pub sweeps: usize,

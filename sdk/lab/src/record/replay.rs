@@ -74,7 +74,7 @@ impl Replay {
     /// come at their sample rate.
     ///
     /// # Errors
-    /// The errors of [`Adapter::open_input`].
+    /// Returns the errors of [`Adapter::open_input`].
     pub fn file(path: &str, fast: bool) -> Result<Box<dyn Input>, DeviceError> {
         let pace = if fast { "fast" } else { "real" };
         let given = [("path", path), ("pace", pace)]

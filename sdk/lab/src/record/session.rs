@@ -63,7 +63,7 @@ impl Session {
     }
 
     /// Records takes until one keeps to its target, and returns this take. Calls `watch` for each
-    /// block of samples, and `told` for each completed take.
+    /// block of samples, and `told` after each completed take.
     ///
     /// # Errors
     /// [`LabError::OffTarget`] if no take kept to its target. [`LabError::Left`] if `watch` ended

@@ -161,9 +161,9 @@ pub struct MeasuredResponse {
 }
 
 impl MeasuredResponse {
-    /// Converts the response to the type that corrects recordings for the rig, and compensates
-    /// scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file that
-    /// recordings and scenes use.
+    /// Converts the response to a [`SetupResponse`], with which recordings are corrected for the
+    /// rig, and scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file
+    /// that recordings and scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {
         SetupResponse {

@@ -68,7 +68,7 @@ impl Record {
     /// axis is the input, and its second axis is the output.
     ///
     /// # Errors
-    /// The errors of [`Self::new`], and an error if the recording does not have two axes.
+    /// Returns the errors of [`Self::new`], and an error if the recording does not have two axes.
     pub fn from_recording(recording: Recording) -> Result<Self, LabError> {
         let start_s = recording.second(0);
         let signals = recording.axes.len();

@@ -31,8 +31,8 @@ pub enum View {
         /// What happened in the trial, for example that the motion left its target.
         notice: Option<String>,
     },
-    /// A texture plays. The participant either raises its level until the texture can be felt, or
-    /// matches its gain.
+    /// A texture plays. The participant either raises the texture's level until the texture can be
+    /// felt, or matches the texture's gain.
     Matching {
         texture: String,
         /// The method, which determines the available keys.

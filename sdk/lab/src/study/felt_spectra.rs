@@ -111,9 +111,9 @@ impl Reference {
 /// motion left the study's target. `recorded` contains the spectra of the real textures by name.
 ///
 /// # Errors
-/// The errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no recordings.
-/// [`LabError::File`] if a recording does not belong to its trial or has no spectrum, or if the
-/// spectrum of a real texture is missing.
+/// Returns the errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no
+/// recordings. [`LabError::File`] if a recording does not belong to its trial or has no spectrum,
+/// or if the spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,

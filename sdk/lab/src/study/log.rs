@@ -33,9 +33,9 @@ impl Log {
     /// header.
     ///
     /// Opening does not change an existing file. If a crash left the last line incomplete, the
-    /// first [`Self::append`] removes this line. The line is not removed earlier because the caller
-    /// must first check that the whole lines belong to this session. A symbolic link is never
-    /// followed.
+    /// first [`Self::append`] removes this line. Opening does not remove the line, because the
+    /// caller must first check that the complete lines belong to this session. A symbolic link is
+    /// never followed.
     ///
     /// # Errors
     /// [`LabError::OtherVersion`] if the file has another header. [`LabError::Busy`] while another

@@ -23,8 +23,8 @@ pub struct ParticipantPlan {
     pub participant: String,
     /// Practice trials; empty if the study has no training phase.
     pub training: Vec<Trial>,
-    /// Textures in the order in which their gains are matched. All are played in the study's
-    /// matching model. Empty if the study has no gain phase.
+    /// Textures in the order in which their gains are matched. All are played with the model that
+    /// the study uses for gain matching. Empty if the study has no gain phase.
     pub gain: Vec<String>,
     /// The rated trials.
     pub trials: Vec<Trial>,

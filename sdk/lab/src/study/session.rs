@@ -51,7 +51,8 @@ impl<'a> Session<'a> {
     /// answers in this folder, continues the session at the next step.
     ///
     /// # Errors
-    /// The errors of [`Log::open`], and [`LabError::Line`] if a line does not belong to the plan.
+    /// Returns the errors of [`Log::open`], and [`LabError::Line`] if a line does not belong to the
+    /// plan.
     pub fn open(
         study: &'a Study,
         plan: &'a ParticipantPlan,
@@ -229,7 +230,7 @@ impl<'a> Session<'a> {
     /// was played before the key press.
     ///
     /// # Errors
-    /// The errors of [`Self::rate`].
+    /// Returns the errors of [`Self::rate`].
     pub fn press(&mut self, key: GainKey, played: &Playback, at_ms: u64) -> Result<(), LabError> {
         let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
@@ -276,7 +277,7 @@ impl<'a> Session<'a> {
     /// written to the device until then.
     ///
     /// # Errors
-    /// The errors of [`Self::rate`].
+    /// Returns the errors of [`Self::rate`].
     pub fn stopped(
         &mut self,
         reason: StopReason,
@@ -310,7 +311,7 @@ impl<'a> Session<'a> {
     /// Records the end of a rest.
     ///
     /// # Errors
-    /// The errors of [`Self::rate`].
+    /// Returns the errors of [`Self::rate`].
     pub fn rested(&mut self, at_ms: u64) -> Result<(), LabError> {
         let Step::Rest { after, .. } = self.step() else {
             return Err(self.misplaced("there is no rest now"));

@@ -59,7 +59,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
 /// Does the same as [`fit_asset`], and also calls `begins` with each model before it is fitted.
 ///
 /// # Errors
-/// The errors of [`fit_asset`].
+/// Returns the errors of [`fit_asset`].
 pub fn fit_asset_watched(
     takes: &[Take],
     request: &AssetRequest,

@@ -8,9 +8,10 @@
 //! mm/s and compared at 57 and 113 mm/s. For corrugated paper, the third-octave errors of Bands at
 //! these two speeds are 1.2 and 0.8 dB. Without added conditions, they would be 4.3 and 5.5 dB. On
 //! the other reliefs the errors are 0.3 to 1.6 dB; without added conditions, they would be 0.6 to
-//! 3.4 dB. One of the ten predictions gets worse: vinyl at 57 mm/s, which has hardly any lines (1.6
-//! dB instead of 0.9 dB). Conditions are added only if the recordings show that frequencies follow
-//! the speed. The third-party recordings of strokes that were tried did not show this.
+//! 3.4 dB. One of the ten predictions gets worse: the error for vinyl, which has hardly any lines,
+//! is 1.6 dB instead of 0.9 dB at 57 mm/s. Conditions are added only if the recordings show that
+//! frequencies follow the speed. The third-party recordings of strokes that were tried did not show
+//! this.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};

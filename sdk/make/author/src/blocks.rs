@@ -30,8 +30,8 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// By how much the spectra of two recordings of one texture would differ, in decibels: the RMS of
-/// the difference between the spectra of odd and even blocks, divided by √2.
+/// The expected difference between the spectra of two recordings of one texture, decibels. It is
+/// the RMS of the difference between the spectra of odd and even blocks, divided by √2.
 ///
 /// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
 /// division by √2 corrects for this.

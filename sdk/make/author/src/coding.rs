@@ -1,5 +1,5 @@
-//! Whether a fitted asset is coded: the same texture in fewer bytes, which readers of version 1.0
-//! refuse.
+//! Whether a fitted asset is coded. A coded asset has the same texture in fewer bytes, but readers
+//! of version 1.0 refuse it.
 
 use htex_format::Asset;
 use schemars::JsonSchema;

@@ -1,5 +1,5 @@
-//! Compares the spectrum of a recording with other spectra: those of an asset's representations, or
-//! of another recording.
+//! Compares the spectrum of a recording with the spectra of an asset's representations, or with the
+//! spectrum of another recording.
 
 use htex_dsp::fluctuation::Fluctuation;
 use htex_dsp::vibrotactile::Listener;

@@ -9,12 +9,13 @@ use htex_play::{Representation, Texture};
 
 use crate::{FeltError, TextureSpectrum};
 
-/// Describes a texture for the index of a library: its spectrum at the default condition and, if the
-/// asset keeps recorded spectra, the felt difference from them.
+/// Describes a texture for the index of a library: its spectrum at the default condition, the
+/// held-out error that the asset states and, if the asset keeps recorded spectra, the felt
+/// difference from these spectra.
 ///
-/// Both belong to the representation that an app would play with the built-in models, so that the
-/// same textures give the same library on every machine. A texture that has only other models is
-/// not described.
+/// All values are for the representation that an app with only the built-in models would play, so
+/// that the same textures give the same library on every machine. If no built-in model can play the
+/// texture, the description is empty.
 pub fn describe(asset: &Asset) -> Description {
     let texture = texture(asset);
     match played(&texture) {
@@ -27,8 +28,8 @@ pub fn describe(asset: &Asset) -> Description {
     }
 }
 
-/// Returns the id of the model that an app would play with the built-in models; `None` if the asset
-/// has only other models.
+/// Returns the id of the model that an app with only the built-in models would play; `None` if no
+/// built-in model can play the asset.
 pub fn played_model(asset: &Asset) -> Option<String> {
     played(&texture(asset)).map(|representation| representation.id().to_owned())
 }

@@ -21,10 +21,10 @@ pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 /// is not better than others (`tests/peers/confusions.py`).
 const SENSATION_EXPONENT: f64 = 0.3;
 
-/// Nine out of ten second recordings of a surface differ from the first one by at most this many
-/// times its repeatability, which is the median. Of 180 pairs of takes of a robot's fingertip on 20
-/// materials, 94 % differed by at most 3.5 times, and 89 % by at most 3 times the repeatability of
-/// the first take.
+/// Bound for the difference between two recordings of a surface, in multiples of the first
+/// recording's repeatability (a median). Nine out of ten second recordings are within this bound.
+/// Of 180 pairs of takes of a robot's fingertip on 20 materials, 94 % differed by at most 3.5
+/// times, and 89 % by at most 3 times the repeatability of the first take.
 pub const REPEATABILITY_BOUND: f64 = 3.5;
 
 /// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
@@ -136,8 +136,8 @@ impl FeltError {
         }
     }
 
-    /// Combines two results into a worst case. Of each number, the value further from 0 is kept;
-    /// each flag is true only if it is true in both results.
+    /// Combines two results into a worst case. For each number, the result is the value further
+    /// from 0. A flag is true only if it is true in both results.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };

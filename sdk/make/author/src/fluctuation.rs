@@ -1,4 +1,4 @@
-//! How recordings and voices fluctuate in time, and how much two of them differ in it.
+//! How recordings and voices fluctuate in time, and how much two fluctuations differ.
 
 use htex_dsp::fluctuation::{EXCESS_BANDS, Fluctuation, envelope_excess};
 use htex_format::Law;

@@ -4,11 +4,12 @@
 //! it is the level of the model's own fit. On simulated surfaces, this level differs from the
 //! recording's level by up to 6 dB. The levels of sBeta and sSlope are too high, because these
 //! models are fitted to the largest bins: sBeta mainly to the ten largest peaks, sSlope to the
-//! largest bin. In a noisy estimate, the largest bins are too high. The level of MFCC is too low
-//! because MFCC averages logarithms. For a model such as Bands, the level follows from the energies
-//! that the model stores. The descriptor of such a model states this
-//! ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the model's fit.
-//! sBeta and sSlope round their parameters in the same way as files before they compute the level.
+//! largest bin. In a noisy estimate of a spectrum, the largest bins are higher than the true
+//! spectrum. The level of MFCC is too low because MFCC averages logarithms. For a model such as
+//! Bands, the level follows from the energies that the model stores. The descriptor of such a model
+//! states this ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the
+//! model's fit. sBeta and sSlope round their parameters in the same way as files before they
+//! compute the level.
 //!
 //! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate,
 //! because the conversion to the player's rate removes up to half of the power near that frequency.

@@ -51,8 +51,8 @@ pub struct DifferenceAt {
     /// Speed, mm/s, and force, newtons, at which both were evaluated.
     pub speed_mm_s: f64,
     pub force_n: f64,
-    /// Level of the second representation above that of the first, decibels; `None` if one of them
-    /// is silent.
+    /// Level of the second representation minus the level of the first, decibels; `None` if one of
+    /// them is silent.
     pub level_db: Option<f64>,
     #[serde(flatten)]
     pub difference: Difference,

@@ -1,14 +1,17 @@
-//! Extra conditions at a slower and a faster speed than the only recorded one.
+//! Extra conditions for a texture that was recorded at a single speed: one at a slower and one at a
+//! faster speed.
 //!
-//! Where the contact is unknown, a player keeps the shape of the spectrum at every speed and scales
-//! its level. But on recorded strokes of fingertips, the level of high frequencies rises faster with
-//! the speed than the level of low ones: its exponent was about 0.7 + 0.28 log2(f / 250 Hz). From
-//! three recorded speeds on, the recordings themselves show this. With one recorded speed, half of
-//! this tilt is assumed, because materials differ: the tilt of one was 0.51 an octave, of another
-//! 0.07. Half of it helps on both (`docs/real-recordings.md`).
+//! If the contact is unknown, a player uses the same shape of the spectrum at every speed, and
+//! changes only the level. But on recorded strokes of fingertips, the level of high frequencies
+//! rises faster with the speed than the level of low ones: its exponent was about 0.7 + 0.28 log2(f
+//! / 250 Hz). This change of the exponent is called the tilt. If a texture was recorded at three
+//! speeds or more, the recordings themselves show the tilt. If it was recorded at one speed, half
+//! of the measured tilt is assumed, because materials differ: the tilt was 0.51 per octave for one
+//! material and 0.07 for another. Half of the tilt reduces the error for both
+//! (`docs/real-recordings.md`).
 //!
-//! A condition is computed on each side, so the player and the file format need no rule of their
-//! own. The level of the conditions follows the law.
+//! The two conditions are stored like recorded conditions, so the player and the file format need
+//! no rule for the tilt. The level of the two conditions follows the law.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Contact, ExponentSource, Law};
@@ -29,7 +32,7 @@ const SPEEDS: [f64; 2] = [1.0 / 3.0, 3.0];
 /// segment spectra of each recorded condition.
 ///
 /// # Errors
-/// The errors of [`TextureSpectrum::average`].
+/// Returns the errors of [`TextureSpectrum::average`].
 pub(crate) fn conditions(
     recorded: &[ConditionSpectrum],
     parts: &[Vec<SegmentSpectra>],

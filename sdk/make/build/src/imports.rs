@@ -1,7 +1,7 @@
 //! Files of other haptic formats in a recipe. The format is recognised by the file's extension. A
 //! file with a signal is fitted like a recording, and needs settings for full scale, speed and
-//! force. A file that contains a texture's parameters is converted to an asset without a fit. The
-//! settings are the same as those of `htex import`, under the keys of recipes.
+//! force. A file that contains a texture's parameters is converted to an asset without a fit.
+//! `htex import` has the same settings, as flags instead of keys of a recipe.
 
 use std::path::Path;
 

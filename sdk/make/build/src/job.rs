@@ -2,9 +2,9 @@
 //! machine.
 //!
 //! For this reason, a job does not use models that are installed on the machine. The key of a job
-//! does not depend on folders or times. Of the metadata, the key depends only on the entries that
-//! affect how the texture plays (`contact`, `law`). The texture's name and its other metadata are
-//! applied to the fitted asset when the library is assembled ([`Job::apply_metadata`]).
+//! does not depend on folders or times. The key depends only on those metadata that affect how the
+//! texture plays (`contact`, `law`). The texture's name and its other metadata are applied to the
+//! fitted asset when the library is assembled ([`Job::apply_metadata`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;

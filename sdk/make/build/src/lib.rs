@@ -14,8 +14,7 @@
 //! These modules lead from recordings to a library:
 //!
 //! 1. `recipe` and `plan` read a recipe and list the textures that it describes, each with its
-//!    recordings and settings. The settings are the same as those of the command and of the Python
-//!    package.
+//!    recordings and settings. The command and the Python package have the same settings.
 //! 2. `hashes` and `job` turn each texture into a job, which is data with a key.
 //! 3. `cache` looks up the key of each job. If no result is stored for the key, the job is pending.
 //!    Threads or a cluster (`htex.dask`) run the pending jobs.

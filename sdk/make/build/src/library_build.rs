@@ -118,7 +118,7 @@ impl Build {
     /// folder `output`. The folder is created if it is missing.
     ///
     /// # Errors
-    /// - The errors of [`Recipe::open`].
+    /// - Returns the errors of [`Recipe::open`].
     /// - A glob matches nothing, a template or a pattern fails, a name is not valid, or two
     ///   recordings of a texture have different settings.
     /// - The library would lose textures and the options forbid removals.
@@ -395,7 +395,7 @@ fn is_of_input(error: &BuildError) -> bool {
 /// with [`remember`].
 ///
 /// # Errors
-/// The errors of [`Build::open`].
+/// Returns the errors of [`Build::open`].
 pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError> {
     // Missing files are not an error here, because the following build reports them.
     let prepared = RecipeInputs::new(recipe, output, &[], Missing::LeftOut)?;

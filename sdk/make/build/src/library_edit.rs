@@ -40,16 +40,16 @@ pub struct LibraryEdit {
     pub add: Vec<Addition>,
     /// Metadata to set, in each texture.
     pub metadata: Metadata,
-    /// Tags to add to those of each texture.
+    /// Tags to add to each texture.
     pub add_tags: Vec<String>,
-    /// Tags to remove from those of each texture.
+    /// Tags to remove from each texture.
     pub remove_tags: Vec<String>,
     /// A CSV file with metadata of single textures. The column `texture` has their names, and the
     /// other columns have the names of the metadata.
     pub table: Option<PathBuf>,
-    /// Only textures that match all of these are removed, or get other metadata.
+    /// Only textures that match all of these filters are removed or get new metadata.
     pub filters: Vec<Filter>,
-    /// What the library says about itself from now on; `None` if that does not change.
+    /// New metadata of the library itself; `None` to leave this metadata unchanged.
     pub library_metadata: Option<LibraryMetadata>,
     /// Whether added and edited textures may state no licence.
     pub allows_unlicensed: bool,
@@ -72,11 +72,11 @@ pub struct EditSummary {
     pub name: String,
     /// Number of textures that were removed.
     pub removed: usize,
-    /// Number of textures that have another name.
+    /// Number of textures that were renamed.
     pub renamed: usize,
     /// Number of textures that were added.
     pub added: usize,
-    /// Number of textures with other metadata.
+    /// Number of textures whose metadata were changed.
     pub edited: usize,
     /// The library that was written.
     pub packed: PackSummary,
@@ -92,13 +92,13 @@ impl LibraryEdit {
         is_known && !self.changes_all() && self.table.is_none() && self.library_metadata.is_none()
     }
 
-    /// Changes a library, and writes it to `output`, which may be the same file. `told` is called
-    /// with the number of textures that were edited so far.
+    /// Changes a library, and writes it to `output`, which may be the same file. Calls `told` with
+    /// the number of textures edited so far.
     ///
     /// # Errors
     /// - A file cannot be read or written.
     /// - The library has no texture that should be removed or renamed, or that the table names.
-    /// - A new name is there already.
+    /// - The library already has a texture with a new name.
     /// - A changed texture would not be valid, or states no licence.
     ///
     /// After an error, the file at `output` is unchanged.

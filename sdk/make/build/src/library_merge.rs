@@ -9,15 +9,15 @@ use crate::BuildError;
 use crate::error::at_place;
 use crate::removed::named_briefly;
 
-/// What happens if two libraries have different textures of one name.
+/// What happens if two libraries have different textures with the same name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OnConflict {
     /// The merge ends with an error.
     #[default]
     Error,
-    /// The texture of the first of these libraries is taken.
+    /// The merged library gets the texture of the first of these libraries.
     First,
-    /// The texture of the last of these libraries is taken.
+    /// The merged library gets the texture of the last of these libraries.
     Last,
 }
 
@@ -35,7 +35,7 @@ pub enum OnConflict {
 /// ```
 #[derive(Debug, Default)]
 pub struct LibraryMerge {
-    /// The libraries, each with a text that is put before the names of its textures.
+    /// The libraries, each with a prefix for the names of its textures.
     pub libraries: Vec<(PathBuf, String)>,
     pub on_conflict: OnConflict,
     /// What the merged library says about itself.
@@ -47,8 +47,8 @@ impl LibraryMerge {
     ///
     /// # Errors
     /// - A library cannot be read, or the merged library cannot be written.
-    /// - Two libraries have different textures of one name, unless [`Self::on_conflict`] chooses
-    ///   one of them. Two names that differ only in case are always an error.
+    /// - Two libraries have different textures with the same name, unless [`Self::on_conflict`]
+    ///   chooses one of them. Two names that differ only in case are always an error.
     ///
     /// After an error, the file at `output` is unchanged.
     pub fn run(&self, output: &Path, name: &str) -> Result<PackSummary, BuildError> {

@@ -15,8 +15,8 @@ use crate::{BuildError, OnConflict};
 /// Largest texture and largest sound that is copied, bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Folders of builds to merge, as `htex build` writes them. Machines that each build a part of a
-/// library make the whole library in this way.
+/// The results folders of several builds to merge. Use this if several machines each build a part
+/// of a library.
 ///
 /// ```no_run
 /// use htex_build::{BuildsMerge, OnConflict};
@@ -30,7 +30,7 @@ const MOST_BYTES: u64 = 64 << 20;
 /// ```
 #[derive(Debug, Default)]
 pub struct BuildsMerge {
-    /// The folders, each with a text that is put before the names of its textures.
+    /// The folders, each with a prefix for the names of its textures.
     pub folders: Vec<(PathBuf, String)>,
     pub on_conflict: OnConflict,
     /// What the merged library says about itself.
@@ -50,7 +50,7 @@ impl BuildsMerge {
     ///
     /// # Errors
     /// - A folder has no report, or a file cannot be read or written.
-    /// - The errors of [`LibraryMerge::run`].
+    /// - Returns the errors of [`LibraryMerge::run`].
     pub fn run(&self, output: &Path, name: &str) -> Result<Report, BuildError> {
         let builds = self.folders.iter().map(|(folder, prefix)| Built::open(folder, prefix));
         let builds = builds.collect::<Result<Vec<_>, _>>()?;

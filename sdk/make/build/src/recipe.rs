@@ -261,7 +261,7 @@ impl Recipe {
     /// Reads a recipe from a file, given by path or URI.
     ///
     /// # Errors
-    /// The errors of [`Self::parse`], and an error if the file cannot be read.
+    /// Returns the errors of [`Self::parse`], and an error if the file cannot be read.
     pub fn open(file: &Path) -> Result<Self, BuildError> {
         let text = match remote_location(file)? {
             Some(location) => RemoteFiles::temporary(Some(location.clone())).text(&location)?,

@@ -205,12 +205,12 @@ fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, Exchan
     Ok((!coverage.is_inside()).then(|| coverage.to_string()))
 }
 
-/// Writes the vibration that a scene plays as a file of another format. Models, motion and seed are
-/// those of the scene.
+/// Writes the vibration that a scene plays as a file of another format. The scene determines
+/// models, motion and seed.
 ///
 /// # Errors
-/// The errors of [`export`]. Also an error if the format stores assets and not the vibration that
-/// they play.
+/// Returns the errors of [`export`]. Also returns an error if the format stores assets and not the
+/// vibration that they play.
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,

@@ -210,9 +210,10 @@ impl Playing<'_> {
 }
 
 impl Path {
-    /// Makes the path at one speed (mm/s) and force (N). A missing value comes from the default
-    /// condition of the representation with this model, or else from the paper (80 mm/s, 0.4 N).
-    /// Without both, the path is the default condition itself.
+    /// Makes the path of a finger that moves at one speed (mm/s) and force (N). If one of the
+    /// values is missing, it comes from the default condition of the representation with this
+    /// model. If that condition does not state it, it comes from the paper (80 mm/s, 0.4 N). If
+    /// both values are missing, the path is the asset's default condition.
     ///
     /// # Errors
     /// When the asset has no such representation.

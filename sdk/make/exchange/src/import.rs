@@ -213,7 +213,7 @@ fn mapped(
 /// Reads a file as a recording. [`import`] does this before it fits models.
 ///
 /// # Errors
-/// The errors of [`import`]. Also an error if the file does not contain a signal.
+/// Returns the errors of [`import`]. Also returns an error if the file does not contain a signal.
 pub fn recording_of(
     file: &str,
     bytes: &[u8],
@@ -250,7 +250,7 @@ pub fn recording_of(
 /// differ.
 ///
 /// # Errors
-/// The errors of [`fit_asset`].
+/// Returns the errors of [`fit_asset`].
 pub fn fit_signals(
     takes: &[Take],
     mut request: AssetRequest,

@@ -40,9 +40,9 @@ pub struct Pattern {
     /// Level over time, 0 to 1. The level raised to the power of `exponent` is the amplitude,
     /// relative to the strongest vibration at the current frequency.
     pub level: Vec<Point>,
-    /// Exponent that converts levels to amplitudes. The exponent is 1 if levels are amplitudes
-    /// relative to the strongest vibration. The exponent is 2 if levels are the square roots of
-    /// these amplitudes, as in `.ahap`.
+    /// Exponent that converts levels to amplitudes. The exponent is 1 if levels are themselves
+    /// amplitudes relative to the strongest vibration. The exponent is 2 if levels are the square
+    /// roots of these amplitudes, as in `.ahap`.
     pub exponent: i32,
     /// Frequency over time, hertz.
     pub frequency_hz: Vec<Point>,

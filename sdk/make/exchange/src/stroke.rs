@@ -23,8 +23,8 @@ impl Stroke {
     /// with time, position and force.
     ///
     /// # Errors
-    /// The errors of [`htex_author::recording::read_trace`], except that positions may be missing
-    /// if the file has a speed.
+    /// Returns the errors of [`htex_author::recording::read_trace`], except that positions may be
+    /// missing if the file has a speed.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_stroke(path)?))
     }
@@ -33,7 +33,7 @@ impl Stroke {
     /// messages.
     ///
     /// # Errors
-    /// The errors of [`Self::open`].
+    /// Returns the errors of [`Self::open`].
     pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
         Ok(Self::new(stroke_from_bytes(file, bytes)?))
     }

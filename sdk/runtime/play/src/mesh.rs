@@ -11,8 +11,8 @@
 //! - If there are several Delaunay triangulations, as for a grid, the module `cells` chooses one.
 //! - A condition counts as lying on an edge of the hull if it equals its projection on this edge,
 //!   within the same tolerance. The narrow triangle between such a condition and the edge is not
-//!   used for interpolation. A motion inside this triangle is projected on the edge, and so is a
-//!   motion next to this triangle outside the hull. The projection then determines the weights.
+//!   used for interpolation. A motion inside this triangle, or next to it outside the hull, is
+//!   projected on the edge. The projection then determines the weights.
 //!
 //! The weights change continuously with the motion. At a recorded condition, only that condition's
 //! weight is not zero.

@@ -116,9 +116,9 @@ impl VoiceOptions {
     }
 
     /// Sets whether the texture becomes stronger and weaker in time as its recording did, if the
-    /// asset states how much ([`htex_format::Fluctuation`]). By default it does not, and the noise is
-    /// stationary. The mean square of the samples stays the same. Nobody has felt yet whether this
-    /// makes a texture more real. A [`SampleSource`](crate::SampleSource) ignores this option.
+    /// asset states how much ([`htex_format::Fluctuation`]). By default the noise is stationary.
+    /// The mean square of the samples stays the same. Nobody has tested yet whether this makes a
+    /// texture feel more real. A [`SampleSource`](crate::SampleSource) ignores this option.
     #[must_use]
     pub fn with_fluctuation(mut self, fluctuation: bool) -> Self {
         self.fluctuation = fluctuation;

@@ -40,8 +40,8 @@ impl Batch {
     /// Writes a file. The file appears at `path` when [`Self::finish`] returns, or earlier.
     ///
     /// # Errors
-    /// The errors of [`crate::files::write_file`]. If this file completes a group, the call also
-    /// returns errors of earlier files in the group.
+    /// Returns the errors of [`crate::files::write_file`]. If this file completes a group, the call
+    /// also returns errors of earlier files in the group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_to(Target::new(path)?, bytes)
     }

@@ -10,8 +10,8 @@ use crate::files::private;
 /// A secret key of this user.
 ///
 /// Other users may be able to write to the folder of the stored data. Therefore each stored file
-/// begins with a keyed hash of its name and content. Programs do not use a file whose hash was not
-/// made with this user's key.
+/// begins with a keyed hash of its name and content. Programs use only files whose hash was made
+/// with this user's key.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;

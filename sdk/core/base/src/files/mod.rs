@@ -238,7 +238,7 @@ pub fn replace_file(
 /// Writes bytes to a file atomically, as [`replace_file`] does.
 ///
 /// # Errors
-/// The errors of [`replace_file`].
+/// Returns the errors of [`replace_file`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file(path, |file| file.write_all(bytes))
 }

@@ -116,7 +116,7 @@ impl OwnFolder {
     /// Opens a regular file for reading and appending.
     ///
     /// # Errors
-    /// The errors of [`Self::open`].
+    /// Returns the errors of [`Self::open`].
     pub fn open_to_append(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true).append(true))
     }
@@ -226,7 +226,7 @@ impl OwnFolder {
     /// anywhere in this folder.
     ///
     /// # Errors
-    /// The errors of [`Self::write`].
+    /// Returns the errors of [`Self::write`].
     pub fn write_by(&self, part: &Path, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         let (part, path) = (self.entry(part)?, self.entry(inside)?);
         let mut file = self.create_new(&part)?;
@@ -242,7 +242,7 @@ impl OwnFolder {
     /// Renames a file inside this folder. Creates missing folders above the new path.
     ///
     /// # Errors
-    /// The errors of [`Self::write`].
+    /// Returns the errors of [`Self::write`].
     pub fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         let from = self.entry_path(from)?;
         fs::rename(from, self.entry(to)?)

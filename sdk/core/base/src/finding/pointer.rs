@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-/// A place in a JSON document. A place refers to the object or array that contains it, and so on up
-/// to the root. [`Self::pointer`] formats the place as a JSON pointer.
+/// A place in a JSON document. Each place refers to the place of the object or array that contains
+/// it, so the places form a chain that ends at the root. [`Self::pointer`] formats the place as a
+/// JSON pointer.
 ///
 /// ```
 /// use htex_base::finding::Place;

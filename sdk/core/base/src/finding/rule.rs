@@ -32,11 +32,11 @@ pub struct Stage {
     pub ends: bool,
 }
 
-/// The stage that adds the number of findings after the first hundred.
+/// The last stage. It checks whether there are more than a hundred findings.
 pub const COUNT: Stage =
     Stage { of: "the count of findings beyond the first hundred", ends: false };
 
-/// The rule that ends every report with more than a hundred findings.
+/// The rule of the last finding in a report, if there were more than a hundred findings.
 pub const FINDINGS_TRUNCATED: &Rule = &Rule {
     code: "FINDINGS_TRUNCATED",
     severity: Severity::Info,

@@ -112,7 +112,7 @@ impl Storage {
     /// `HTEX_STORAGE_TIMEOUT_S`.
     ///
     /// # Errors
-    /// The errors of [`Settings::from_variables`].
+    /// Returns the errors of [`Settings::from_variables`].
     pub fn from_environment() -> Result<Self, StorageError> {
         let variables = Variables::of_process();
         Ok(Self::new(Settings::from_variables(&variables)?, variables))
@@ -133,7 +133,7 @@ impl Storage {
     /// error, the local file may contain a part of the data.
     ///
     /// # Errors
-    /// The errors of [`Self::read`].
+    /// Returns the errors of [`Self::read`].
     pub fn download(
         &self,
         location: &Location,
@@ -163,7 +163,7 @@ impl Storage {
     /// Returns whether a file exists.
     ///
     /// # Errors
-    /// The errors of [`Self::stat`].
+    /// Returns the errors of [`Self::stat`].
     pub fn exists(&self, location: &Location) -> Result<bool, StorageError> {
         Ok(self.stat(location)?.is_some())
     }
@@ -203,7 +203,7 @@ impl Storage {
     /// further request.
     ///
     /// # Errors
-    /// The errors of [`Self::read`].
+    /// Returns the errors of [`Self::read`].
     pub fn open(&self, location: &Location, head_bytes: u32) -> Result<Remote, StorageError> {
         self.open_at(location, 0..u64::from(head_bytes.max(1)))
     }

@@ -1,4 +1,4 @@
-//! Spectra that are coarse enough for an index, so that textures can be found by what they resemble.
+//! Spectra that are coarse enough for an index, with which programs find similar textures.
 
 /// Number of points, evenly spaced in log frequency from 20 to 1000 Hz.
 pub(crate) const POINTS: usize = 48;
@@ -34,9 +34,9 @@ impl CoarseSpectrum {
     /// Reduces magnitudes at ascending frequencies. Returns `None` if the spectrum is silent from
     /// 20 to 1000 Hz.
     ///
-    /// A point is the RMS of the magnitudes whose frequencies are in its range. If there is none, it
-    /// is the magnitude at the centre of the range, interpolated. Beyond the frequencies, the
-    /// magnitude is 0.
+    /// A point is the RMS of the magnitudes whose frequencies are in its range. If no frequency is
+    /// in the range, the point is the interpolated magnitude at the centre of the range. Outside
+    /// the given frequencies, the magnitude is 0.
     pub fn new(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let edge = |i: usize| LOW_HZ * libm::pow(HIGH_HZ / LOW_HZ, i as f64 / POINTS as f64);
         let mut points = [0.0; POINTS];

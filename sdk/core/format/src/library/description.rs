@@ -1,9 +1,10 @@
-//! What a writer states about a texture that its manifest does not say.
+//! What the writer of a library states about a texture in addition to the texture's manifest.
 
 use crate::library::coarse_spectrum::CoarseSpectrum;
 
-/// What a writer states about a texture besides its manifest, for searches. It takes a model to
-/// compute these values, so programs that only read and validate libraries do not check them.
+/// Values for searches that the writer of a library computes for a texture, in addition to the
+/// facts in the manifest. Only a program with the texture's model can compute these values, so
+/// programs that only read and validate libraries do not check them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Description {
     /// The texture's spectrum at its default condition; `None` if it is silent, or if the writer

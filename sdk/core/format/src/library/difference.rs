@@ -15,15 +15,16 @@ pub struct LibraryDifference {
     pub removed: Vec<Entry>,
     /// Textures that only the second library has.
     pub added: Vec<Entry>,
-    /// Textures that have another name in the second library; see [`Self::find_renamed`].
+    /// Textures with the same bytes but another name in the second library; see
+    /// [`Self::find_renamed`].
     pub renamed: Vec<(Entry, Entry)>,
-    /// Textures of one name with different bytes.
+    /// Textures that have the same name in both libraries, but different bytes.
     pub changed: Vec<(Entry, Entry)>,
 }
 
 impl LibraryDifference {
-    /// Compares two libraries. If their indexes have the same hash, no page is read. `of_a` and
-    /// `of_b` make errors of those of each library.
+    /// Compares two libraries. If their indexes have the same hash, no page is read. `of_a`
+    /// converts an error of the first library, and `of_b` an error of the second library.
     ///
     /// ```no_run
     /// use htex_format::library::{Library, LibraryDifference};
@@ -69,7 +70,7 @@ impl LibraryDifference {
         }
     }
 
-    /// Finds textures that are removed and, with the same bytes, added under another name.
+    /// Finds renamed textures: a removed texture and an added texture with the same bytes.
     #[must_use]
     pub fn find_renamed(self) -> Self {
         let mut added: BTreeMap<[u8; 32], Vec<Entry>> = BTreeMap::new();

@@ -32,11 +32,13 @@ pub struct Entry {
     pub law: Law,
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
-    /// Licence of the texture; `None` if it states none. The index has the first 255 bytes. This
-    /// and the next four values are `None` in a library of version 1.0, whose index lacks them.
+    /// Licence of the texture; `None` if it states none. The index stores only the first 255 bytes.
+    /// This value and the next four are `None` in a library of version 1.0, because its index does
+    /// not store them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
-    /// Who made the texture; `None` if it does not say. The index has the first 255 bytes.
+    /// Who made the texture; `None` if the texture does not state it. The index stores only the
+    /// first 255 bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
     /// Physical quantity of the texture's samples.

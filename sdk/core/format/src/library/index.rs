@@ -70,7 +70,7 @@ impl Index {
     }
 
     /// Returns the minor version of the library's format. An index of version 1.0 has no licences,
-    /// authors, quantities, felt differences and spectra.
+    /// authors, quantities, felt differences or spectra.
     pub fn minor_version(&self) -> u16 {
         self.header.minor
     }
@@ -109,8 +109,8 @@ impl Index {
         self.root.leaf(leaf)
     }
 
-    /// Returns the byte range in the file of the spectra of a leaf page's entries; `None` if no entry
-    /// has one.
+    /// Returns the byte range in the file of the page with the spectra of a leaf page's entries;
+    /// `None` if no entry has a spectrum.
     pub fn spectra_range(&self, leaf: usize) -> Option<Range<u64>> {
         self.root.spectra(leaf)
     }

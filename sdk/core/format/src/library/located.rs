@@ -26,8 +26,8 @@ impl Library<LibraryFile> {
     /// whole index, and two requests are enough.
     ///
     /// # Errors
-    /// The errors of [`Library::open`], or [`LibraryError::Storage`] if a remote file cannot be
-    /// opened.
+    /// Returns the errors of [`Library::open`], or [`LibraryError::Storage`] if a remote file
+    /// cannot be opened.
     ///
     /// ```
     /// use htex_format::library::Library;

@@ -50,11 +50,12 @@ fn part<'a>(run: &Run, bytes: &'a [u8], range: &Range<u64>) -> &'a [u8] {
 }
 
 impl<S: LibrarySource + Sync> Library<S> {
-    /// Reads the entries of several names, in their order. Neighbouring pages are read at once, and
-    /// `at_once` reads run at the same time, which saves time if the library is on a network.
+    /// Reads the entries of several names, in their order. One read covers several neighbouring
+    /// pages, and `at_once` reads run at the same time. This saves time if the library is on a
+    /// network.
     ///
     /// # Errors
-    /// The errors of [`Self::get`]. The library must have all of the names.
+    /// Returns the errors of [`Self::get`]. A name that the library does not have is also an error.
     pub fn entries_of<N: AsRef<str>>(
         &self,
         names: &[N],
@@ -82,9 +83,10 @@ impl<S: LibrarySource + Sync> Library<S> {
             .collect()
     }
 
-    /// Reads the textures of entries, which must come from this library. Textures that are near each
-    /// other in the file are read at once, and `at_once` reads run at the same time. `take` receives
-    /// each texture once, in the order of the file, or of the reads if several run at once.
+    /// Reads the textures of entries, which must come from this library. One read covers several
+    /// textures that are near each other in the file, and `at_once` reads run at the same time.
+    /// `take` receives each texture once: in the order of the file or, if `at_once` is above 1, in
+    /// the order in which the reads end.
     ///
     /// ```no_run
     /// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;
@@ -97,7 +99,7 @@ impl<S: LibrarySource + Sync> Library<S> {
     /// ```
     ///
     /// # Errors
-    /// The errors of [`Self::read`], and those of `take`. The first error ends the reading.
+    /// Returns the first error of [`Self::read`] or of `take`. This error ends the reading.
     pub fn read_many<E: From<LibraryError>>(
         &self,
         entries: &[Entry],

@@ -79,8 +79,8 @@ impl LibraryMetadata {
         Ok(())
     }
 
-    /// Checks the entries: texts without control characters and invisible characters, in one line
-    /// each except the description and the changelog.
+    /// Checks that the entries contain no control characters and no invisible characters, and that
+    /// each entry except the description and the changelog is one line.
     ///
     /// # Errors
     /// If an entry breaks a rule. The text names the entry.

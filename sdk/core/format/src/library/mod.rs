@@ -2,8 +2,8 @@
 //! open one texture without reading the others.
 //!
 //! `spec/htexlib-1.md` is the normative specification. The file starts with a header and an index.
-//! The index consists of compressed pages, and lists the textures sorted by name. However large the
-//! library is, opening one texture takes three reads: the start of the file, a page of the index,
+//! The index consists of compressed pages, and lists the textures sorted by name. Opening one
+//! texture takes three reads in a library of any size: the start of the file, a page of the index,
 //! and the texture.
 //!
 //! ```

@@ -31,7 +31,7 @@ impl NamePattern {
         self.matches_with(name, true)
     }
 
-    /// Returns whether a text matches, in which `/` has no meaning.
+    /// Returns whether a text matches. In this text, `/` is an ordinary character.
     pub fn matches_text(&self, text: &str) -> bool {
         self.matches_with(text, false)
     }

@@ -1,10 +1,11 @@
 //! Packs textures into a library.
 //!
-//! Only after the last texture does the packer know which objects are shared. So the packer first
-//! writes each added texture to a temporary store, the spool, and writes the library at the end.
-//! Textures of another library need no spool, because they can be read from that library.
-//! The packer orders textures by name, and shared objects by hash. So the same textures always give
-//! the same file, in whatever order and from whatever libraries they were added.
+//! The packer does not know which objects are shared until it has received the last texture. So the
+//! packer first writes each added texture to a temporary store, the spool, and writes the library
+//! at the end. Textures of another library need no spool, because they can be read from that
+//! library. The packer orders textures by name, and shared objects by hash. So the same textures
+//! always give the same file. It does not matter in which order and from which libraries they were
+//! added.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, Write};

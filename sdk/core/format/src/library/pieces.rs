@@ -38,7 +38,7 @@ pub(crate) struct Object {
     pub piece: Piece,
     /// Number of times that textures contain the object.
     pub uses: u64,
-    /// Whether the object is part of equal textures only. A module is no such part.
+    /// Whether the object is a part that only equal textures share. This is false for modules.
     pub is_part: bool,
 }
 

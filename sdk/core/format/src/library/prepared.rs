@@ -4,11 +4,11 @@ use crate::library::description::Description;
 use crate::library::facts::Facts;
 use crate::{Asset, ReadError};
 
-/// Computes what a library states about a texture besides its manifest.
+/// Computes what a library states about a texture in addition to the texture's manifest.
 pub type Describe = fn(&Asset) -> Description;
 
 /// A checked texture that is ready to be added to a library. Several threads can prepare textures
-/// at once.
+/// at the same time.
 ///
 /// ```no_run
 /// use htex_format::library::{PreparedTexture, Writer};
@@ -22,16 +22,16 @@ pub struct PreparedTexture {
     pub(crate) bytes: Vec<u8>,
     pub(crate) blake3: [u8; 32],
     pub(crate) facts: Facts,
-    /// What the library states about the texture besides its manifest.
+    /// What the library states about the texture in addition to the texture's manifest.
     pub description: Description,
 }
 
 impl PreparedTexture {
-    /// Checks the bytes of a `.htex` file. `describe` computes the texture's description; without
-    /// it, the description is empty.
+    /// Checks the bytes of a `.htex` file. `describe` computes the texture's description. If it is
+    /// `None`, the description is empty.
     ///
     /// # Errors
-    /// If the bytes are no valid asset.
+    /// If the bytes are not a valid asset.
     pub fn new(bytes: Vec<u8>, describe: Option<Describe>) -> Result<Self, ReadError> {
         let asset = Asset::from_bytes(&bytes)?;
         let description = describe.map_or(Description::default(), |describe| describe(&asset));

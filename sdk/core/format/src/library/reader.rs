@@ -72,7 +72,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the default [`Limits`].
     ///
     /// # Errors
-    /// The errors of [`Library::open`].
+    /// Returns the errors of [`Library::open`].
     pub fn open_source(source: S) -> Result<Self, LibraryError> {
         Self::open_source_with(source, Limits::default())
     }
@@ -80,7 +80,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the given limits.
     ///
     /// # Errors
-    /// The errors of [`Library::open`].
+    /// Returns the errors of [`Library::open`].
     pub fn open_source_with(source: S, limits: Limits) -> Result<Self, LibraryError> {
         let mut opening = Opening::new(limits);
         loop {
@@ -160,7 +160,7 @@ impl<S: LibrarySource> Library<S> {
     /// Reads the entry of a texture that the library should have.
     ///
     /// # Errors
-    /// The errors of [`Self::get`].
+    /// Returns the errors of [`Self::get`].
     pub fn needed(&self, name: &str) -> Result<Entry, LibraryError> {
         let absent = || LibraryError::Absent { name: name.to_owned(), nearest: self.nearest(name) };
         self.entry(name)?.ok_or_else(absent)
@@ -213,15 +213,16 @@ impl<S: LibrarySource> Library<S> {
     /// Reads the texture of an entry, which must come from this library.
     ///
     /// # Errors
-    /// The errors of [`Self::get`].
+    /// Returns the errors of [`Self::get`].
     pub fn read(&self, entry: &Entry) -> Result<Vec<u8>, LibraryError> {
         let ranges = self.index.asset_ranges(entry).into_iter();
         let parts: Result<Vec<_>, _> = ranges.map(|range| self.read_range(range)).collect();
         self.index.assemble(entry, &parts?)
     }
 
-    /// Reads what the library states about a texture besides its manifest. The entry must come from
-    /// this library. Reads the page with the spectra of its leaf, unless it is in the cache.
+    /// Reads what the library states about a texture in addition to the texture's manifest. The
+    /// entry must come from this library. Reads the page with the spectra of its leaf, unless it is
+    /// in the cache.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.
@@ -246,13 +247,14 @@ impl<S: LibrarySource> Library<S> {
         Ok(spectra)
     }
 
-    /// Returns all entries, sorted by name. Many pages are read at once, and decoded one at a time.
+    /// Returns all entries, sorted by name. One read covers many pages, and the pages are decoded
+    /// one after another.
     pub fn entries(&self) -> Entries<'_, S> {
         let ahead = Ahead::default();
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0, ahead }
     }
 
-    /// Returns all entries with their descriptions, sorted by name. Many pages are read at once.
+    /// Returns all entries with their descriptions, sorted by name. One read covers many pages.
     pub fn described(&self) -> Described<'_, S> {
         let (entries, ahead) = (self.entries(), Ahead::default());
         Described { entries, ahead, spectra: Vec::new(), leaf: None }

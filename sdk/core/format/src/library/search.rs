@@ -10,7 +10,7 @@ use crate::library::query::Query;
 use crate::library::reader::Library;
 use crate::library::source::LibrarySource;
 
-/// A texture, and how far its spectrum is from another one.
+/// A texture, and how much its spectrum differs from a given spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Similar {
     pub entry: Entry,
@@ -19,20 +19,20 @@ pub struct Similar {
     pub distance_db: f64,
 }
 
-/// A texture whose spectrum nearly equals that of another texture.
+/// A texture whose spectrum nearly equals another texture's spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duplicate {
     pub entry: Entry,
-    /// Name of the nearest texture of those before it in the library.
+    /// Name of the nearest texture among the textures before this one in the library.
     pub of: String,
     /// RMS difference of the levels of both spectra, decibels.
     pub distance_db: f64,
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Returns the textures of a quantity whose spectra are nearest to a spectrum, the nearest one
-    /// first, at most `most`. Only textures that match the query are returned. Textures without a
-    /// spectrum are not.
+    /// Returns the `most` textures of a quantity whose spectra are nearest to a spectrum, the
+    /// nearest texture first. The function considers only textures that match the query and have a
+    /// spectrum.
     ///
     /// ```no_run
     /// # use htex_format::library::{Library, Query};
@@ -74,9 +74,9 @@ impl<S: LibrarySource> Library<S> {
         Ok(nearest)
     }
 
-    /// Returns the textures whose spectra are at most `within_db` from that of another texture of
-    /// the same quantity, sorted by name. Of a group of equal textures, the first one is left out.
-    /// Only textures that match the query are compared.
+    /// Returns each texture whose spectrum differs by at most `within_db` from the spectrum of an
+    /// earlier texture of the same quantity, sorted by name. So the result does not contain the
+    /// first texture of a group of equal textures. Only textures that match the query are compared.
     ///
     /// # Errors
     /// If the index or the spectra cannot be read or break a rule.

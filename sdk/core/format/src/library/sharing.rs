@@ -1,8 +1,9 @@
 //! Decides which objects the textures of a library share, and where the file contains their bytes.
 //!
-//! The writer compares the hashes of all embedded modules, and of all textures. It stores a module
-//! that several textures embed only once, and so it stores equal textures. An object that only one
-//! texture has stays among that texture's own bytes, because sharing it would save nothing.
+//! The writer compares the hashes of all embedded modules, and of all textures. If several textures
+//! embed the same module, it stores the module once. It also stores equal textures once. An object
+//! that only one texture has stays among that texture's own bytes, because sharing it would save
+//! nothing.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! A page of spectra: those of the entries of a leaf, in their order.
+//! A page of spectra: the spectra of the entries of a leaf page, in the order of the entries.
 
 use crate::library::coarse_spectrum::{CoarseSpectrum, POINTS};
 use crate::library::wire::{Cursor, WireError};

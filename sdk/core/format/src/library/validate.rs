@@ -32,7 +32,7 @@ pub fn validate(path: &Path) -> Result<Report, LibraryError> {
 /// Validates a library from any source, within the given limits.
 ///
 /// # Errors
-/// The errors of [`validate`].
+/// Returns the errors of [`validate`].
 pub fn validate_source(
     source: impl LibrarySource,
     limits: &Limits,

@@ -71,7 +71,7 @@ impl Writer {
     /// Adds a texture that was checked before, perhaps by another thread.
     ///
     /// # Errors
-    /// The errors of [`Self::add`], except those of an asset that is not valid.
+    /// Returns the errors of [`Self::add`], except the error for an asset that is not valid.
     pub fn add_prepared(
         &mut self,
         name: &str,
@@ -93,9 +93,9 @@ impl Writer {
         self.packer.add(name, asset)
     }
 
-    /// Adds the textures of another library as they are, without reading each of them. `name`
-    /// returns the new name of an entry, or `None` to leave the texture out. The entries come in
-    /// the order of their names.
+    /// Adds the textures of another library unchanged, without unpacking them. `name` returns the
+    /// new name of an entry, or `None` to leave the texture out. The entries come in the order of
+    /// their names.
     ///
     /// The textures are not checked again. [`validate`](crate::library::validate) checks a library
     /// that may be damaged.
@@ -113,7 +113,7 @@ impl Writer {
     ///
     /// # Errors
     /// - A page of the other library cannot be read or breaks a rule.
-    /// - A new name breaks a rule, or is there already, as for [`Self::add`].
+    /// - A new name breaks a rule, or the library already has it, as for [`Self::add`].
     pub fn add_library<S: LibrarySource + Send + 'static>(
         &mut self,
         library: Library<S>,
@@ -153,7 +153,7 @@ impl MemoryWriter {
     /// Starts a library. `name` may be empty.
     ///
     /// # Errors
-    /// The errors of [`Writer::create`].
+    /// Returns the errors of [`Writer::create`].
     pub fn new(name: &str) -> Result<Self, LibraryError> {
         Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
@@ -176,7 +176,7 @@ impl MemoryWriter {
     /// Adds a texture, as [`Writer::add`] does.
     ///
     /// # Errors
-    /// The errors of [`Writer::add`].
+    /// Returns the errors of [`Writer::add`].
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.0.add(name, asset)
     }
@@ -184,7 +184,7 @@ impl MemoryWriter {
     /// Returns the library's bytes.
     ///
     /// # Errors
-    /// The errors of [`Writer::finish`].
+    /// Returns the errors of [`Writer::finish`].
     pub fn finish(self) -> Result<(PackSummary, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;

@@ -136,8 +136,8 @@ pub struct ByHandAt {
 /// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// The errors of [`make`]. There is also an error if there is no model or no condition, or if only
-/// some conditions have a speed or a force.
+/// Returns the errors of [`make`]. Also returns an error if there is no model or no condition, or
+/// if only some conditions have a speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {

@@ -3,9 +3,9 @@
 //! band.
 //!
 //! The spectrum of a 0.2 s segment under a Hann window cannot tell 15 Hz from 20 Hz, or a drift
-//! from noise. The spectrum of one second can, under a window whose side lobes are 92 dB down
-//! (four-term Blackman-Harris; Harris 1978). The check compares the power in the band that the two
-//! windows show. In 240 third-party recordings of fingers, tools and microphones, the short
+//! from noise. The spectrum of a segment of one second can, with a window whose side lobes are 92
+//! dB down (four-term Blackman-Harris; Harris 1978). The check compares the power in the band that
+//! the two windows show. In 240 third-party recordings of fingers, tools and microphones, the short
 //! segments show at most 4.3 dB more power than the long windows. If the normal forces and
 //! positions of such fingers are read as a texture, the short segments show at least 32 dB more.
 //! For noise of 1 to 15 Hz, they show at least 11 dB more.

@@ -17,8 +17,8 @@ use crate::conditions::{ConditionSpectrum, four_digits};
 pub enum CellStatus {
     /// The cell has enough windows.
     Fitted,
-    /// The cell alone has too few windows, but enough together with the nearest windows of
-    /// neighbouring cells.
+    /// The cell itself has too few windows, but it has enough if the nearest windows of
+    /// neighbouring cells are added.
     Widened,
     /// The cell has too few windows and did not become a condition.
     Thin,

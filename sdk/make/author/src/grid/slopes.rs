@@ -2,10 +2,10 @@
 //!
 //! In all windows of a cell, the finger covers an equal path ([`super::paths`]). In each
 //! third-octave band, the logarithm of the energy is fitted linearly against the logarithms of
-//! speed and force, over the windows around the crossing. The fit predicts how the energy changes if
-//! the speed and the force of the window become those of the crossing. The window's spectrum is
-//! scaled by this change. Without this correction, windows with a firm touch would dominate the mean
-//! of the cell.
+//! speed and force, over the windows around the crossing. The fit predicts how the energy changes
+//! between the speed and force of the window and the speed and force of the crossing. The window's
+//! spectrum is scaled by this change. Without this correction, windows with a firm touch would
+//! dominate the mean of the cell.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;

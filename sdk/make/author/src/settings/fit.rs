@@ -272,8 +272,8 @@ impl FitSettings {
     /// are read with `reading`.
     ///
     /// # Errors
-    /// The errors of [`Self::models`], and an error if the setup's response or the grid cannot be
-    /// read.
+    /// Returns the errors of [`Self::models`], and an error if the setup's response or the grid
+    /// cannot be read.
     pub fn request(
         &self,
         registry: &Registry,

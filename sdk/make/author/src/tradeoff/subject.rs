@@ -1,4 +1,4 @@
-//! Subjects of a sweep. A subject is a recording on which contenders are measured.
+//! Prepares the recordings on which a sweep measures its contenders (subjects).
 
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::finding::Notice;

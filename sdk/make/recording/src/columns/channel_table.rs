@@ -34,7 +34,7 @@ pub struct ChannelTable {
 /// used. The time column is not among the channels.
 ///
 /// # Errors
-/// The errors of [`read_recording`](crate::read_recording).
+/// Returns the errors of [`read_recording`](crate::read_recording).
 pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
     let file = file_name(path);
     let read = || {

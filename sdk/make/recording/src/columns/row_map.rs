@@ -62,7 +62,7 @@ impl RowMap {
     /// file from a [`Tracker`](crate::Tracker).
     ///
     /// # Errors
-    /// The errors of [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn of_motion(
         source: &str,
         channels: &[(String, String)],

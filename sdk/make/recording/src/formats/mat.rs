@@ -3,8 +3,8 @@
 //! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements. Each
 //! element has a tag, which contains the type and the size, and data. A compressed element is a
 //! zlib stream that contains one element. Streams are decompressed piece by piece, so that a
-//! decompressed element is never in memory as a whole. The file is first read for the names of its
-//! variables. The variables that are used are then read a second time.
+//! decompressed element is never in memory as a whole. The reader first reads the names of all
+//! variables. It then reads the values of the variables that are used.
 //!
 //! This reader was written for this project because the crate `matfile` does not read structs and
 //! reads the whole file into memory.

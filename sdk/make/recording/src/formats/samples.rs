@@ -1,4 +1,5 @@
-//! Files whose samples stand in a fixed order: WAV, FLAC and NPY.
+//! Reads files in which each channel has the same number of samples, in a fixed order: WAV, FLAC
+//! and NPY.
 
 use crate::error::Fault;
 use crate::sheet::{Columns, Layout, Numbers, Sheet};

@@ -19,8 +19,8 @@
 //! 16 kB. The block would take 77 kB if it stored a separate filter in single precision for each
 //! condition. For the AR model, a lattice filter would need less computation. But the AR model
 //! interpolates line spectral frequencies, so the spectra of a lattice filter would differ from the
-//! model's between conditions. Where the mixed filters differ from the model by more than the limit
-//! in [`BakeLimits`], conditions are inserted.
+//! model's between conditions. If the mixed filters differ from the model by more than the limit in
+//! [`BakeLimits`], conditions are inserted there.
 #![forbid(unsafe_code)]
 
 mod compress;

@@ -5,7 +5,8 @@
 //! undecided if the two angles opposite to this edge sum to half a turn. Triangles joined by
 //! undecided edges form one cell. The cell is divided into a fan of triangles from its first
 //! condition. Because the angles do not depend on the order of the conditions, the result does not
-//! depend on it. For the same reason, the result is the same for every initial triangulation.
+//! depend on this order either. For the same reason, the result is the same for every initial
+//! triangulation.
 
 use std::collections::BTreeMap;
 

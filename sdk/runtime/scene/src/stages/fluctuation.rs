@@ -1,6 +1,6 @@
-//! Makes a texture stronger and weaker in time, as its recording was. The mean square of the samples
-//! does not change. A scene must ask for this effect, because nobody has felt yet whether it makes a
-//! texture more real.
+//! Makes a texture stronger and weaker in time, as in its recording. The mean square of the samples
+//! does not change. A scene must switch this effect on, because nobody has tested yet whether it
+//! makes a texture feel more real.
 
 use htex_dsp::random_envelope::RandomEnvelope;
 

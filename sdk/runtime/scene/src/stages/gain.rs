@@ -1,6 +1,7 @@
-//! Converts samples from the textures' unit to the device's. The result is in the device's physical
-//! unit (by a stated gain), at the level of a preview that is played as sound, or the radicand of a
-//! drive voltage.
+//! Converts samples from the textures' unit to the device's unit. The result depends on the device.
+//! If the scene states a gain to the device's physical unit, the result is in this unit. For a
+//! sound device, the result has the level of a preview. For an electrovibration display, the result
+//! is the radicand from which the square-root stage computes the drive voltage.
 
 use htex_device::Quantity;
 

@@ -3,11 +3,12 @@
 //! f_c t). (The paper, under "Electrovibration rendering", prints min|y| instead, which allows
 //! negative radicands.)
 //!
-//! The minimum of a stream is not known in advance. Therefore, [`HEADROOM`] times the RMS of the
-//! scene's loudest surface is used as the shift |min y|. Radicands that are still negative are set
-//! to zero and counted.
+//! The minimum of a stream is not known in advance. Therefore, the stage uses [`HEADROOM`] times
+//! the RMS of the scene's loudest surface in place of |min y|. Radicands that are still negative
+//! are set to zero and counted.
 //!
-//! The shift does not follow the actual minimum, because changes of the shift would be felt.
+//! This shift does not follow the actual minimum of the stream, because the finger would feel
+//! changes of the shift.
 
 use htex_device::Quantity;
 

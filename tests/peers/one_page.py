@@ -70,6 +70,9 @@ def compare_cases(page, path: Path) -> tuple[int, int]:
         known = [asset[0]["conditions"][element["condition"]] for element in asset[1]["at"]]
         # The page has no direction: a speed is that of either.
         motion = abs(case["speed_mm_s"]), case["force_n"]
+        # Nor does it know a finger that rests.
+        if motion[0] < 0.5 or motion[1] <= 0:
+            continue
         here = [i for i, one in enumerate(known) if (one.get("speed_mm_s", 0), one.get("force_n", 0)) == motion]
         if not here and len(known) > 1:
             continue

@@ -173,7 +173,7 @@ def flat(values: list[float | list[float]]) -> list[float]:
 
 def grid(low: float, high: float) -> range:
     """The numbers n of the multiples 5 n Hz in the band (section 5)."""
-    return range(math.ceil(low / 5 - 1e-9), math.floor(high / 5 + 1e-9) + 1)
+    return range(max(1, math.ceil(low / 5 - 1e-9)), math.floor(high / 5 + 1e-9) + 1)
 
 
 def read_reference(data: bytes, low: float, high: float, conditions: int, budget: Budget) -> list[list[float]]:

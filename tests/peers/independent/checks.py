@@ -287,5 +287,5 @@ def check_field(field: dict, described: dict | None, newer: bool, pointer: str, 
         findings.add("FIELD_KIND_WRONG", pointer)
         return
     expected = None if described["unit"] == "1" else described["unit"]
-    if field.get("unit") != expected:
+    if (field.get("unit") or None) != expected:
         findings.add("FIELD_UNIT_WRONG", pointer)

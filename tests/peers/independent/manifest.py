@@ -34,11 +34,10 @@ class Store(t.Any):
             return
         if not isinstance(value, dict):
             raise t.Wrong(pointer, "neither a word nor an object")
-        kinds = [key for key in t.in_order(value) if key in STEP_STORES]
-        for key in kinds:
-            STEPS.check(value[key], f"{pointer}/{key}")
-        if len(kinds) != 1:
+        kinds = [key for key in value if key in (*STEP_STORES, "f32", "f64")]
+        if len(kinds) != 1 or kinds[0] not in STEP_STORES:
             raise t.Wrong(pointer, "not one of u16, u8, packed and coded")
+        STEPS.check(value[kinds[0]], f"{pointer}/{kinds[0]}")
 
     def unknown(self, value, pointer):
         if isinstance(value, dict):

@@ -83,12 +83,12 @@ class Voice:
         speed, force = self.stated[chosen]
         return speed or 0.0, force or 0.0
 
-    def motion(self, case: dict) -> tuple[float, float]:
-        """Speed and force of a case; what it lacks is the default condition's."""
+    def motion(self, case: dict) -> tuple[float, float, bool]:
+        """Speed and force of a case, and whether one is given; what it lacks is the default condition's."""
         speed, force = self.default()
-        return case.get("speed_mm_s", speed), case.get("force_n", force)
+        return case.get("speed_mm_s", speed), case.get("force_n", force), bool({"speed_mm_s", "force_n"} & case.keys())
 
-    def at(self, speed: float, force: float) -> Played:
+    def at(self, speed: float, force: float, may_rest: bool = True) -> Played:
         # A finger slides in either direction, and nothing else depends on the sign.
         speed = abs(speed)
         point = (self.axes[0].position(speed), self.axes[1].position(force))
@@ -99,6 +99,8 @@ class Voice:
         values = mix(self.model["id"], [self.sets[i] for i in kept], [weights[i] for i in kept])
         check_ranges(self.model, values)
         level = sum(weights[i] * self.levels[i] for i in kept)
+        if may_rest and not slides(speed, force):
+            level = 0.0
         ratio_v, ratio_f = self.ratios(speed, force, foot)
         a, b, c = (0.0, 0.0, 0.0) if self.model["id"] in FOLLOW_THE_MOTION else self.exponents
         ratio_v = clamp(ratio_v)

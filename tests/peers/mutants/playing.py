@@ -9,6 +9,9 @@ LAW, AXES, MESH, PLAYING, MIXING, SHAPES = "law.py", "axes.py", "mesh.py", "play
 # Groups and positions on an axis (rule 1).
 AXIS = [
     Mutant("values are the same within 4 %", AXES, "SAME = 0.05", "SAME = 0.04"),
+    Mutant("values are the same if the smaller is 95 % of the larger", AXES, "abs(a - b) <= SAME * max(abs(a), abs(b))", "min(a, b) >= (1 - SAME) * max(a, b)"),
+    Mutant("values are the same within 5 % and rounding", AXES, "SAME = 0.05", "SAME = 0.05 + 1e-10"),
+    Mutant("values are the same below 5 %", AXES, "abs(a - b) <= SAME", "abs(a - b) < SAME"),
     Mutant("values are the same within 6 %", AXES, "SAME = 0.05", "SAME = 0.06"),
     Mutant("5 % of the smaller value", AXES, "SAME * max(abs(a), abs(b))", "SAME * min(abs(a), abs(b))"),
     Mutant("a value joins if it is the same as the greatest of the group", AXES, "groups[-1][0])", "groups[-1][-1])"),
@@ -79,6 +82,7 @@ WEIGHTS = [
     Mutant("conditions with a weight of 1e-9 are left out", PLAYING, "LEFT_OUT = 1e-12", "LEFT_OUT = 1e-9"),
     Mutant("weights are scaled up for what is left out", PLAYING, "kept = sorted((i for i, w in weights.items() if w > LEFT_OUT), key=lambda i: self.mesh.points[i])", "kept = sorted((i for i, w in weights.items() if w > LEFT_OUT), key=lambda i: self.mesh.points[i])\n        weights = {i: weights[i] / sum(weights[j] for j in kept) for i in kept}",
            "what is left out is at most 2e-12 of the sum, and numbers are compared within 1e-8"),
+    Mutant("a finger at rest has a level", PLAYING, "        if may_rest and not slides(speed, force):\n            level = 0.0\n", ""),
     Mutant("sets are mixed in descending order", PLAYING, "key=lambda i: self.mesh.points[i])\n        for", "key=lambda i: self.mesh.points[i], reverse=True)\n        for"),
     Mutant("sets are mixed in the order of their forces", PLAYING, "key=lambda i: self.mesh.points[i])\n        for", "key=lambda i: self.mesh.points[i][::-1])\n        for"),
     Mutant("sets are mixed in the order of the manifest", PLAYING, "key=lambda i: self.mesh.points[i])\n        for", "key=lambda i: i)\n        for"),

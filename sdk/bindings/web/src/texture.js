@@ -213,7 +213,8 @@ export class Texture extends Handle {
 
   /** The frequencies of the spectra, Hz. */
   get grid() {
-    const [first, last] = this.band.map((hz, i) => (i === 0 ? Math.ceil(hz / GRID_HZ) : Math.floor(hz / GRID_HZ)));
+    const [low, high] = this.band;
+    const [first, last] = [Math.max(1, Math.ceil(low / GRID_HZ - 1e-9)), Math.floor(high / GRID_HZ + 1e-9)];
     return Float64Array.from({ length: last - first + 1 }, (_, i) => GRID_HZ * (first + i));
   }
 

@@ -38,8 +38,8 @@ impl Band {
 
     /// Grid index (in multiples of [`GRID_HZ`]) of the lowest bin in the band.
     pub fn first_bin(&self) -> usize {
-        // The tolerance keeps an edge on the grid that rounding has moved.
-        libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize
+        // The tolerance keeps an edge on the grid that rounding has moved. 0 Hz is never a bin.
+        (libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize).max(1)
     }
 
     /// Grid index of the highest bin in the band.

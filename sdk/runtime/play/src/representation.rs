@@ -194,15 +194,18 @@ impl<'a> Representation<'a> {
     /// Returns the factors that scale frequencies and level at a motion, or `None` if the finger
     /// does not slide.
     fn scaling(&self, motion: Option<Motion>) -> Result<Option<Scaling>, Error> {
-        // A model that follows the motion itself needs no factors.
-        let follows = || self.model().is_ok_and(|model| model.follows_motion());
-        let Some(motion) = motion.filter(|_| !follows()) else {
+        let Some(motion) = motion else {
             return Ok(Some(Scaling::NONE));
         };
         let motion = motion.checked()?;
-        let conditions = self.conditions()?;
-        let slides = slides(motion.speed_mm_s, motion.force_n);
-        Ok(slides.then(|| conditions.scaling(motion, CEILING)))
+        if !slides(motion.speed_mm_s, motion.force_n) {
+            return Ok(None);
+        }
+        // A model that follows the motion itself needs no factors.
+        if self.model().is_ok_and(|model| model.follows_motion()) {
+            return Ok(Some(Scaling::NONE));
+        }
+        Ok(Some(self.conditions()?.scaling(motion, CEILING)))
     }
 
     /// Returns the magnitudes at a motion as they were recorded, or interpolated between

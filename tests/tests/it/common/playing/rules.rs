@@ -170,6 +170,12 @@ fn meshes() -> Vec<Small> {
             ],
             &[[155.0, 0.394], [49.0, 1.08]],
         ),
+        // In binary64, 1 - 0.95 is more than 5 % of 1, and 100 - 95 is 5 % of 100.
+        mesh(
+            "five_percent",
+            &[[50.0, 1.0], [100.0, 0.95], [150.0, 1.0], [95.0, 0.4]],
+            &[[75.0, 1.0], [97.0, 0.7], [120.0, 0.97]],
+        ),
         // Two conditions would have the same position, so that no values are grouped. Two edges
         // could take the same triangle.
         mesh(
@@ -260,6 +266,8 @@ fn laws() -> Vec<Small> {
         [900.0, 0.02],
         [80.0, 19.0],
         [80.0, 0.001],
+        [0.4, 0.4],
+        [80.0, 0.0],
     ];
     let one = |name, law| Small { law: Some(law), ..Small::new(name, &[[80.0, 0.4]], &far) };
     let of = |name, contact, quantity| Small {

@@ -23,6 +23,14 @@ pub(super) fn manifests() -> Vec<Named> {
             let steps = json!({ "scale": 1 });
             m["representations"][0]["fields"][0]["store"] = json!({ "u8": steps, "u16": steps })
         }),
+        ("json_type_two_stores_and_inside", |m| {
+            let (wrong, steps) = (json!({ "scale": "1" }), json!({ "scale": 1 }));
+            m["representations"][0]["fields"][0]["store"] = json!({ "u8": wrong, "u16": steps })
+        }),
+        ("json_type_word_beside_store", |m| {
+            let store = json!({ "u8": { "scale": 1 }, "f32": 1 });
+            m["representations"][0]["fields"][0]["store"] = store
+        }),
         ("json_type_null", |m| m["author"] = json!(null)),
         ("json_type_fraction", |m| m["representations"][0]["at"][0]["condition"] = json!(0.5)),
         ("json_type_missing", |m| drop(m.as_object_mut().unwrap().remove("band"))),
@@ -136,6 +144,24 @@ pub(super) fn manifests() -> Vec<Named> {
             m["representations"][0]["parameters"] = json!("absent.bin");
         }),
         ("extension_name_invalid", |m| m["extensions"] = json!({ "LOOK": {} })),
+        ("extension_required_unknown_form", |m| m["extensions_required"] = json!(["LOOK"])),
+        ("band_invalid_below_a_bin", |m| m["band"] = json!({ "low_hz": 4e-9, "high_hz": 4 })),
+        ("condition_invalid_all", |m| {
+            m["conditions"] = json!([{
+                "speed_mm_s": -1, "force_n": -1, "repeatability_rms_db": -1,
+                "repeatability_third_octave_rms_db": -1,
+            }])
+        }),
+        ("model_id_invalid_and_version", |m| {
+            m["representations"][0]["model"] = json!("sBeta");
+            m["representations"][0]["model_version"] = json!("1");
+        }),
+        ("plugin_duplicate_and_invalid", |m| {
+            let plugin = json!({
+                "model": "sBeta", "version": "1", "file": "plugins/sBeta.wasm", "blake3": "A".repeat(64),
+            });
+            m["plugins"] = json!([plugin, plugin]);
+        }),
         ("extension_required_unknown", |m| m["extensions_required"] = json!(["com.example.X/1"])),
         ("findings_truncated", |m| {
             m["conditions"] = (0..120).map(|i| json!({ "force_n": -1 - i })).collect();

@@ -110,6 +110,16 @@ pub(super) fn valid() -> Vec<Named> {
                 m["extensions_required"] = json!(["org.htex.hatt/1", "org.htex.appearance/1"]);
             }),
         ),
+        (
+            "valid_empty_unit",
+            with_manifest(|m| m["representations"][0]["fields"][0]["unit"] = json!("")),
+        ),
+        (
+            "valid_large_prerelease",
+            with_manifest(|m| {
+                m["representations"][0]["model_version"] = json!("1.0.0-18446744073709551616");
+            }),
+        ),
         ("valid_triangles", with_triangles(&RECTANGLE, &FLIPPED)),
         ("valid_triangles_narrow", narrow()),
         ("valid_triangles_empty", without()),

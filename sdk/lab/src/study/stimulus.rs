@@ -26,8 +26,8 @@ pub struct Stimulus {
     /// Gain relative to the maximum, decibels. `None` plays at the level that the study's device
     /// sets.
     pub gain_db: Option<f64>,
-    /// Reference RMS that applied when the participant set the gain, in the assets' unit. It is
-    /// used only by devices whose `levels` setting is `own`.
+    /// RMS, in the assets' unit, that corresponded to the drive of the device when the participant
+    /// set the gain. It is used only by devices whose `levels` setting is `own`.
     pub reference_rms: Option<f64>,
     /// File name, without extension, for the recording of the felt force. `None` if this force is
     /// not recorded.

@@ -316,8 +316,8 @@ CODES = [
 # Sections 2, 8, 9 and 10: fields, extensions, plugins, entries.
 PARTS = [
     Mutant("the name of a field may be empty", CHECKS, '        if not field["name"]:', "        if False:"),
-    Mutant("a stored unit of 1 is none", CHECKS, '    if field.get("unit") != expected:', '    if (field.get("unit") if field.get("unit") != "1" else None) != expected:'),
-    Mutant("units are not compared", CHECKS, '    if field.get("unit") != expected:', "    if False:"),
+    Mutant("a stored unit of 1 is none", CHECKS, '    if (field.get("unit") or None) != expected:', '    if (field.get("unit") if field.get("unit") != "1" else None) != expected:'),
+    Mutant("units are not compared", CHECKS, '    if (field.get("unit") or None) != expected:', "    if False:"),
     Mutant("a field of another kind has two findings", CHECKS, '        findings.add("FIELD_KIND_WRONG", pointer)\n        return\n', '        findings.add("FIELD_KIND_WRONG", pointer)\n'),
     Mutant("unknown fields of a newer model are findings", CHECKS, "        if not newer:\n            findings.add(\"FIELD_UNKNOWN\"", "        if True:\n            findings.add(\"FIELD_UNKNOWN\""),
     Mutant("fields of another major version are compared", CHECKS, "if fitted is None or fitted[0][0] != own[0][0]:", "if fitted is None:"),

@@ -270,7 +270,7 @@ BLOCK = [
     Mutant("a reference may have infinite magnitudes", BLOCKS, "if any(not math.isfinite(n) or n < 0 for n in numbers):", "if any(n < 0 for n in numbers):"),
     Mutant("the reference does not count against the limit", BLOCKS, "    budget.take(count * conditions)\n", ""),
     Mutant("the limit comes before the reference's length", BLOCKS, '    if len(data) != 4 * count * conditions:\n        raise BlockError("REFERENCE_LENGTH")\n    budget.take(count * conditions)\n', '    budget.take(count * conditions)\n    if len(data) != 4 * count * conditions:\n        raise BlockError("REFERENCE_LENGTH")\n'),
-    Mutant("a reference's grid ends at whole multiples only", BLOCKS, "return range(math.ceil(low / 5 - 1e-9), math.floor(high / 5 + 1e-9) + 1)", "return range(math.ceil(low / 5), math.floor(high / 5) + 1)"),
+    Mutant("a reference's grid ends at whole multiples only", BLOCKS, "return range(max(1, math.ceil(low / 5 - 1e-9)), math.floor(high / 5 + 1e-9) + 1)", "return range(math.ceil(low / 5), math.floor(high / 5) + 1)"),
     Mutant("a reference is not read after another finding of its entry", ASSET, "        if data is None or not band_is_valid(band):\n            return\n", "        if not band_is_valid(band):\n            return\n        data = data or b\"\"\n"),
     Mutant("an entry may be named twice", ASSET, "        if name in self.used:\n            self.findings.add(\"PARAMETERS_ENTRY_INVALID\", pointer)\n            return None\n", ""),
     Mutant("the manifest may be a parameter block", ASSET, 'CONTAINER = ("mimetype", "manifest.json")', 'CONTAINER = ("mimetype",)'),

@@ -16,7 +16,7 @@ const SMALL: u64 = 2_500_000;
 
 /// Largest sizes of the small and the whole static library, bytes.
 const STATIC: u64 = 25_000_000;
-const WHOLE_STATIC: u64 = 45_000_000;
+const WHOLE_STATIC: u64 = 46_000_000;
 
 const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_package(htex @LINE@ REQUIRED)\n\
                      find_package(htex 0.0 QUIET)\nif(htex_FOUND)\n    message(FATAL_ERROR \"of another line of versions\")\nendif()\n\

@@ -148,8 +148,9 @@ export interface At {
   /** Id or short name of the model to use. Default: the representation with the smallest error. */
   model?: string;
   /**
-   * The motion. The spectrum is interpolated between conditions. Default: the first recorded
-   * condition, or the strongest if the first is silent.
+   * The motion. The spectrum is interpolated between conditions. A speed or a force that is absent
+   * is the default condition's. Default: the first recorded condition, or the strongest if the
+   * first is silent.
    */
   at?: Motion;
 }
@@ -189,6 +190,11 @@ export class Texture {
    * error. Loads no model.
    */
   defaultCondition(model?: string): number;
+  /**
+   * Returns a motion with a speed and a force. What `at` lacks is the default condition's; if that
+   * does not state it either, it is 80 mm/s or 0.4 N.
+   */
+  motion(at: Motion, model?: string): Motion & { speed: number; force: number };
   /**
    * Spectrum that a recording of the voice would show: one magnitude, in the texture's unit, for
    * each frequency in Hz.

@@ -158,6 +158,13 @@ export class Texture extends Handle {
     });
   }
 
+  /** Returns a motion with a speed and a force; what `at` lacks is the default condition's. */
+  motion(at, model) {
+    if (at.speed !== undefined && at.force !== undefined) return at;
+    const { speed_mm_s = 80, force_n = 0.4 } = this.manifest.conditions[this.defaultCondition(model)] ?? {};
+    return { ...at, speed: at.speed ?? speed_mm_s, force: at.force ?? force_n };
+  }
+
   /**
    * Returns the spectrum that a recording of the voice would show: one magnitude, in the texture's
    * unit, for each frequency in Hz.
@@ -239,7 +246,8 @@ export class Texture extends Handle {
     const { model, at } = checked(options, AT, call);
     this.guard(model, call);
     const { core } = this;
-    return core.scope((take) => read(take, core.putText(take, model), core.putMotion(take, at)));
+    const motion = at && this.motion(at, model);
+    return core.scope((take) => read(take, core.putText(take, model), core.putMotion(take, motion)));
   }
 
   /** Makes a voice, which plays the texture. */

@@ -32,7 +32,7 @@ async function played(texture, frequencies, { model, speed_mm_s: speed, force_n:
     // The sign of a speed is only its direction.
     const at = { model, at: speed === undefined && force === undefined ? undefined : { speed: speed && Math.abs(speed), force } };
     const voice = texture.voice({ model, rate: 48000 });
-    const coverage = at.at ? voice.coverage(at.at) : undefined;
+    const coverage = at.at ? voice.coverage(texture.motion(at.at, model)) : undefined;
     voice.free();
     return {
       parameters: await flat(texture, at),

@@ -18,6 +18,7 @@ pub(crate) use fixtures::command;
 
 use crate::jobs::at_a_time;
 use crate::places::{cargo, emptied, target, workspace};
+use crate::platform::Build;
 use crate::programs::run;
 
 /// A binding: its name, the programs that its tests need, and the tests.
@@ -86,9 +87,12 @@ pub fn test(names: &[String]) -> Result<()> {
     all_of(tested)
 }
 
-/// Builds the test programs of the workspace. Browser tests mostly wait, and the last ones run
-/// alone.
+/// Builds the test programs of the workspace if they share a profile with what is tested here, as in
+/// continuous integration. Browser tests mostly wait, and the last ones run alone.
 fn test_programs(_: &Path) -> Result<()> {
+    if !Build::here()?.is_of_tests() {
+        return Ok(());
+    }
     let mut build = Command::new("nice");
     build.arg(cargo()).args(["test", "--locked", "--no-run"]).current_dir(workspace());
     run(&mut build)

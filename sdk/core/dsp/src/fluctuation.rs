@@ -131,10 +131,10 @@ impl Fluctuation {
 
 /// Ranges of modulation frequencies, hertz, in which [`envelope_excess`] sums the excess over
 /// stationary noise.
-pub const EXCESS_HZ: [[f64; 2]; 2] = [[1.0, 8.0], [8.0, 32.0]];
+const EXCESS_HZ: [[f64; 2]; 2] = [[1.0, 8.0], [8.0, 32.0]];
 /// Length of the shortest signal that [`envelope_excess`] can measure, seconds: one period of the
 /// slowest modulation.
-pub const LEAST_EXCESS_S: f64 = 1.0;
+const LEAST_EXCESS_S: f64 = 1.0;
 /// Number of bands of [`envelope_excess`].
 pub const EXCESS_BANDS: usize = WIDE_HZ.len() - 1;
 
@@ -143,7 +143,7 @@ pub const EXCESS_BANDS: usize = WIDE_HZ.len() - 1;
 /// square of the mean envelope.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnvelopeExcess {
-    /// The measured variance minus the expected variance, in each range of [`EXCESS_HZ`]; may be
+    /// The measured variance minus the expected variance, at 1 to 8 Hz and at 8 to 32 Hz; may be
     /// below 0.
     pub excess: [f64; 2],
     /// The square of the standard error of `excess` for stationary Gaussian noise.
@@ -162,7 +162,7 @@ pub struct EnvelopeExcess {
 /// Middleton, 1948). So the expectation is computed from a formula, and not from random signals
 /// with the same spectrum.
 ///
-/// `None` if the signal is shorter than [`LEAST_EXCESS_S`], silent, or not finite, or if half its
+/// `None` if the signal is shorter than 1 s, silent, or not finite, or if half its
 /// sample rate is below 128 Hz.
 pub fn envelope_excess(
     signal: &[f64],

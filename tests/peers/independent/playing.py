@@ -19,6 +19,7 @@ from .models import Models
 from .shapes import FOLLOW_THE_MOTION, SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
 
 LEFT_OUT = 1e-12
+SAME_RATIO = 1e-9
 SLIDES_MM_S = 0.5
 
 
@@ -121,7 +122,8 @@ class Voice:
         result = []
         for axis, place, value in zip(self.axes, foot, (speed, force)):
             nearest = axis.nearest(place, value) if axis.complete else 0.0
-            result.append(value / nearest if nearest > 0 else 1.0)
+            ratio = value / nearest if nearest > 0 else 1.0
+            result.append(1.0 if abs(ratio - 1) <= SAME_RATIO else ratio)
         return result[0], result[1]
 
 

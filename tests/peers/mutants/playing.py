@@ -100,6 +100,7 @@ WEIGHTS = [
 OUTSIDE = [
     Mutant("v / v0 may be below 1/16", LAW, "LEAST_RATIO, MOST_RATIO = 1 / 16, 8.0", "LEAST_RATIO, MOST_RATIO = 1 / 64, 8.0"),
     Mutant("v / v0 may be above 8", LAW, "LEAST_RATIO, MOST_RATIO = 1 / 16, 8.0", "LEAST_RATIO, MOST_RATIO = 1 / 16, 32.0"),
+    Mutant("a ratio within 1e-9 of 1 is not 1", PLAYING, "SAME_RATIO = 1e-9", "SAME_RATIO = 0.0"),
     Mutant("the ratio of speeds is not clamped before its powers", PLAYING, "ratio_v = clamp(ratio_v)", "ratio_v = max(ratio_v, 1e-9)"),
     Mutant("the ratio of speeds is not clamped for the level", PLAYING, "        ratio_v = clamp(ratio_v)\n        factor = clamp(power(ratio_v, a))\n", "        factor = clamp(power(clamp(ratio_v), a))\n"),
     Mutant("the ratio of speeds is not clamped for frequencies", PLAYING, "        ratio_v = clamp(ratio_v)\n        factor = clamp(power(ratio_v, a))\n", "        factor = clamp(power(ratio_v, a))\n        ratio_v = clamp(ratio_v)\n"),

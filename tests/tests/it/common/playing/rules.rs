@@ -268,6 +268,8 @@ fn laws() -> Vec<Small> {
         [80.0, 0.001],
         [0.4, 0.4],
         [80.0, 0.0],
+        // The same speed but for rounding: no bin leaves the band.
+        [80.000_000_04, 0.4],
     ];
     let one = |name, law| Small { law: Some(law), ..Small::new(name, &[[80.0, 0.4]], &far) };
     let of = |name, contact, quantity| Small {

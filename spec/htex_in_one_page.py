@@ -71,7 +71,7 @@ def play(manifest, found, sets, speed, force):
     motions = np.array([[one.get("speed_mm_s", 0), one.get("force_n", 0)] for one in known])
     largest = np.where(motions.any(axis=0), motions.max(axis=0), np.inf)
     near = np.linalg.norm((motions - [speed, force]) / largest, axis=1).argmin()
-    x, y = (new / old if old else 1 for new, old in zip((speed, force), motions[near]))
+    x, y = (n / o if o and abs(n / o - 1) > 1e-9 else 1 for n, o in zip((speed, force), motions[near]))
     b = {"velocity": 1, "acceleration": 2}.get(manifest["quantity"], 0)
     law = {"tool": (0, 0.43, 0.07), "finger": (1, b, 1)}.get(manifest.get("contact"), (0, 0.75, 0.5))
     if "law" in manifest: law = [manifest["law"][key]["exponent"] for key in EXPONENTS]

@@ -104,7 +104,7 @@ rule_table! {
         "Bytes that no texture uses can hide other contents.",
         "Pack the library again.";
     LIBRARY_COUNT_WRONG Error:
-        "A number of textures or pages is not the number that there are.",
+        "The library states a wrong number of textures or pages.",
         "Programs differ in which of the two they use.",
         "Pack the library again.";
     LIBRARY_INDEX_CHANGED Error:

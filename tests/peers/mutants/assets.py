@@ -217,6 +217,8 @@ TRIANGLE = [
     Mutant("positions are not scaled", TRIANGLES, "return [(v / speed, f / force) for v, f in motions]", "return [(v, f) for v, f in motions]"),
     Mutant("flat triangles are those of 1e-12", TRIANGLES, "FLAT = 1e-9", "FLAT = 1e-12"),
     Mutant("flat triangles are those of 1e-6", TRIANGLES, "FLAT = 1e-9", "FLAT = 1e-6"),
+    Mutant("a flat corner may not turn inwards", TRIANGLES, "if cross < 0 and not is_flat(a, b, c):", "if cross < 0:"),
+    Mutant("any corner may turn inwards", TRIANGLES, "if cross < 0 and not is_flat(a, b, c):", "if False:"),
     Mutant("triangles may overlap at an edge", TRIANGLES, "        if any(side in directed for side in around):\n            return f\"/{number}\"\n", ""),
     Mutant("triangles need not reach all conditions", TRIANGLES, "    if {i for triangle in corners for i in triangle} != set(range(len(points))):\n        return \"\"\n", ""),
     Mutant("the outline need not be convex", TRIANGLES, "        if cross < 0 and not is_flat(a, b, c):\n            return False\n", ""),

@@ -223,6 +223,8 @@ SHAPE = [
     Mutant("MFCC: the DCT is not orthonormal", SHAPES, 'idct(padded, norm="ortho")', "idct(padded)"),
     Mutant("MFCC: coefficients above the bands count", SHAPES, "padded[: min(count, len(cepstrum))] = cepstrum[:count]", "padded[: min(count, len(cepstrum))] = cepstrum[:count]\n    padded[1] += sum(cepstrum[count:])"),
     Mutant("MFCC: inverse 0 is not clipped", SHAPES, "power = np.maximum(np.linalg.pinv(weights, rcond=share) @ energies, 0.0)", "power = np.abs(np.linalg.pinv(weights, rcond=share) @ energies)"),
+    Mutant("MFCC: inverse 0 counts no singular value as zero", SHAPES, "share = 2.0**-52 * max(weights.shape)", "share = 0.0"),
+    Mutant("MFCC: inverse 0 counts singular values of 1e-6 as zero", SHAPES, "share = 2.0**-52 * max(weights.shape)", "share = 1e-6"),
     Mutant("MFCC: inverse 1 is not regularised", SHAPES, "1e-3 * np.eye(size)", "1e-9 * np.eye(size)"),
     Mutant("MFCC: inverse 2 does not divide by the weights", SHAPES, "energies[some] / sums[some])", "energies[some])"),
     Mutant("MFCC: inverse 3 is linear in f", SHAPES, "np.log(edges[1:-1][some]), logs[some] - np.log(sums[some]), np.log(grid)", "edges[1:-1][some], logs[some] - np.log(sums[some]), grid"),

@@ -448,6 +448,16 @@ fn shapes() -> Vec<Small> {
         Small::of_models("clipped_cepstrum", vec![("mfcc", cepstrum(&wild, 26.0, 0.0))]),
         Small::of_models("narrow_filters", vec![("mfcc", cepstrum(&tilted, 128.0, 0.0))]),
         Small::of_models("filters_without_weight", vec![("mfcc", cepstrum(&tilted, 128.0, 2.0))]),
+        // The smallest singular value is 9e-17 of the largest, and counts as zero. In the second it
+        // is 1.1e-7, and does not.
+        Small {
+            change: |m| m["band"]["high_hz"] = json!(120.0),
+            ..Small::of_models("dependent_filters", vec![("mfcc", cepstrum(&tilted, 20.0, 0.0))])
+        },
+        Small {
+            change: |m| m["band"]["high_hz"] = json!(220.0),
+            ..Small::of_models("close_filters", vec![("mfcc", cepstrum(&tilted, 38.0, 0.0))])
+        },
         Small {
             change: |m| {
                 let fields = m["representations"][0]["fields"].as_array_mut();

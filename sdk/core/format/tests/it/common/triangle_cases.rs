@@ -144,6 +144,15 @@ pub(super) fn narrow() -> Vec<u8> {
     )
 }
 
+/// An asset with triangles whose outline turns inwards at a corner that is flat.
+pub(super) fn dented() -> Vec<u8> {
+    bare(
+        &[[40.0, 0.4], [100.0, 0.4 + 1e-11], [160.0, 0.4], [100.0, 1.2]],
+        &[[0, 1, 3], [1, 2, 3]],
+        |_| (),
+    )
+}
+
 /// An asset with an empty list of triangles, which is none.
 pub(super) fn without() -> Vec<u8> {
     bare(&RECTANGLE, &[], |manifest| {

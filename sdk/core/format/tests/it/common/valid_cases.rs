@@ -7,7 +7,7 @@ use super::cases::Named;
 use super::parts::{block, manifest, parts, with_manifest};
 use super::plugin_cases::with_plugin;
 use super::raw_zip::archive;
-use super::triangle_cases::{FLIPPED, RECTANGLE, narrow, with_triangles, without};
+use super::triangle_cases::{FLIPPED, RECTANGLE, dented, narrow, with_triangles, without};
 use super::{asset, bands, five, reference, sbeta};
 
 pub(super) fn valid() -> Vec<Named> {
@@ -122,6 +122,7 @@ pub(super) fn valid() -> Vec<Named> {
         ),
         ("valid_triangles", with_triangles(&RECTANGLE, &FLIPPED)),
         ("valid_triangles_narrow", narrow()),
+        ("valid_triangles_dented", dented()),
         ("valid_triangles_empty", without()),
         ("valid_newer_store", with_store_key("1.3")),
         ("valid_field_of_newer_model", with_newer_model()),

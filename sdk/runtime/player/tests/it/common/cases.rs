@@ -386,6 +386,18 @@ fn edges() -> Vec<Sound> {
                 [70.0, 1e-30],
             ]),
         ),
+        // A finger that is still before the first sample.
+        (
+            "tones_silent_at_first",
+            tone(&[0.05, 1.0, 0.1, 0.5]).bytes(),
+            motions(&[[0.0, 0.4], [80.0, 0.4]]),
+        ),
+        // A level that falls, but not as far as the ceiling.
+        (
+            "tones_above_ceiling",
+            Plan { law: [0.0, 1.0, 0.0], ceiling: 0.1, ..tone(&[0.05, 1.0]) }.bytes(),
+            motions(&[[40.0, 0.4], [80.0, 0.4]]),
+        ),
         // Ratios of forces, and a force that is below 1e-6 and the nearest f32 to it.
         (
             "tones_least_force",

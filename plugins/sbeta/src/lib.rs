@@ -125,6 +125,7 @@ impl Curve for Shape {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
         let profile = Profile::new(alpha, beta, band);
+        profile.check()?;
         let level = curve_level_rms(band, |f| profile.density_at(f));
         if level > 0.0 && level.is_finite() {
             return Ok(Self { profile, level, logs: None });
@@ -147,7 +148,7 @@ impl Curve for Shape {
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
         self.profile = Profile::new(alpha, beta, self.profile.band);
-        Ok(())
+        self.profile.check()
     }
 
     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
@@ -210,8 +211,17 @@ impl Profile {
         }
     }
 
+    /// Refuses a band that is narrower than what is left out at its edges.
+    fn check(&self) -> Result<(), Error> {
+        if self.low_hz <= self.high_hz {
+            return Ok(());
+        }
+        Err(Error::parameters("an alpha or beta below 1 needs a band of 2.5 Hz or more"))
+    }
+
     pub(crate) fn density_at(&self, frequency_hz: f64) -> f64 {
-        let inside = frequency_hz.clamp(self.low_hz, self.high_hz);
+        // Not `clamp`, which would panic in a band that `check` refuses.
+        let inside = frequency_hz.max(self.low_hz).min(self.high_hz);
         self.density.density_at(self.axis.unit_at(inside))
     }
 }

@@ -419,7 +419,7 @@ fn manifests() -> Vec<Seed> {
     seeds.push(("manifest", "all-keys".to_owned(), serde_json::to_vec(&all).expect("JSON")));
     all.plugins = vec![
         htex_format::Plugin::new(&all.representations[0].model, "1.0.0", b"\0asm\x01\0\0\0")
-            .signed(&[1; 32]),
+            .signed(&htex_format::signing::SecretKey::from_bytes(&[1; 32])),
     ];
     seeds.push(("manifest", "plugin".to_owned(), serde_json::to_vec(&all).expect("JSON")));
     seeds

@@ -2,6 +2,7 @@
 
 use htex::model::Search;
 use htex::{Registry, Texture};
+use htex_format::signing::SecretKey;
 use htex_format::{Manifest, Plugin, Signature};
 
 use crate::block;
@@ -27,7 +28,7 @@ pub fn signed_plugin(input: &[u8]) -> bool {
     } else {
         module
     };
-    let made = Plugin::new(model::ID, "1.0.0", module).signed(&[key; 32]);
+    let made = Plugin::new(model::ID, "1.0.0", module).signed(&SecretKey::from_bytes(&[key; 32]));
     let (mut plugin, mut stored) = (made.clone(), module.to_vec());
     if how & 1 != 0 {
         alter(how, place, change, &mut plugin, &mut stored);
@@ -77,7 +78,7 @@ fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8])
         3 => public_key,
         4 => ed25519,
         5 => {
-            let other = Plugin::new(model, "1.0.1", module).signed(&KEY);
+            let other = Plugin::new(model, "1.0.1", module).signed(&SecretKey::from_bytes(&KEY));
             plugin.signature = other.signature;
             return;
         }

@@ -15,8 +15,10 @@ def mix(model: str, sets: list[Values], weights: list[float]) -> Values:
 
 
 def mean(columns: list, weights: list[float]):
-    """The weighted mean of numbers, or of lists of one length."""
-    total = sum(weight * np.asarray(column, dtype=float) for weight, column in zip(weights, columns))
+    """The weighted mean of numbers, or of lists of one length; rounding puts no mean beyond its numbers."""
+    numbers = np.asarray(columns, dtype=float)
+    total = sum(weight * column for weight, column in zip(weights, numbers))
+    total = np.clip(total, numbers.min(axis=0), numbers.max(axis=0))
     return total.tolist() if isinstance(columns[0], list) else float(total)
 
 

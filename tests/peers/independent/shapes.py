@@ -151,6 +151,8 @@ def sbeta(values: Values, band: Band) -> Callable:
     alpha, beta = values
     a, b = (1.25 if alpha < 1 else 0.0), (1.25 if beta < 1 else 0.0)
     width = math.log(band.high / band.low)
+    if band.low + a > band.high - b:
+        raise Refusal("a band narrower than what is left out at its edges")
 
     def power(base, exponent):
         """The logarithm of base^exponent; 0^0 is 1."""

@@ -87,7 +87,8 @@ fn coded_steps(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteErro
 }
 
 /// Decodes a block into flat arrays. `values` is the number of values that the reader may still
-/// read; this function subtracts the number that it reads.
+/// read; this function subtracts the number that it reads, also if the block has an error behind
+/// them.
 pub(crate) fn decode(
     fields: &[StoredField],
     conditions: usize,
@@ -96,17 +97,15 @@ pub(crate) fn decode(
 ) -> Result<Vec<Vec<f64>>, BlockError> {
     let mut reader = Reader { bytes, limit: *values, left: *values };
     let flats = if coded_lists(fields).is_empty() {
-        (0..conditions)
-            .map(|condition| reader.condition(fields, condition))
-            .collect::<Result<_, _>>()?
+        (0..conditions).map(|condition| reader.condition(fields, condition)).collect()
     } else {
-        reader.with_coded_fields(fields, conditions)?
+        reader.with_coded_fields(fields, conditions)
     };
-    if !reader.bytes.is_empty() {
-        return Err(BlockError::Trailing(reader.bytes.len()));
-    }
     *values = reader.left;
-    Ok(flats)
+    match reader.bytes.len() {
+        rest if rest > 0 && flats.is_ok() => Err(BlockError::Trailing(rest)),
+        _ => flats,
+    }
 }
 
 /// Returns how many bytes a flat array takes in a parameter block with only this condition. In a

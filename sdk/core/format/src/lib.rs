@@ -44,7 +44,6 @@ mod manifest_json;
 mod measure;
 mod packed;
 mod page;
-mod plugin;
 mod quality;
 mod quality_json;
 mod quantity;
@@ -53,6 +52,8 @@ mod rights;
 mod rounding;
 mod rules;
 mod schema_words;
+#[allow(missing_docs, reason = "fields and variants name what they hold")]
+pub mod signing;
 mod stages;
 mod table;
 mod triangles;

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use htex_format::signing::SecretKey;
 use htex_format::{Asset, Plugin};
 use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::AuthorError;
 
-/// Embeds the WASM modules of fitted models into an asset, and signs each with an ed25519 secret
-/// key if a key is given. `registry` must have loaded the models from these same `files`.
+/// Embeds the WASM modules of fitted models into an asset, and signs each if a key is
+/// given. `registry` must have loaded the models from these same `files`.
 ///
 /// # Errors
 /// See [`AuthorError`].
@@ -16,7 +17,7 @@ pub fn embed_plugins(
     asset: &mut Asset,
     registry: &Registry,
     files: &[PathBuf],
-    secret_key: Option<&[u8; 32]>,
+    secret_key: Option<&SecretKey>,
 ) -> Result<(), AuthorError> {
     for file in files {
         let model = model_of(registry, file)?;

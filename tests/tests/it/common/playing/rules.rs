@@ -445,6 +445,20 @@ fn shapes() -> Vec<Small> {
                 ("arma", [list(&[]), list(&[0.9, 0.9]), vec![2_000.0]].concat()),
             ],
         ),
+        // Means that rounding would put out of their range.
+        Small {
+            models: vec![("sslope", vec![vec![100.0, 20.0, 0.05]; 3])],
+            ..Small::new(
+                "ends_of_ranges",
+                &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
+                &[[75.0, 0.6], [80.0, 0.55], [80.0, 0.6]],
+            )
+        },
+        // Narrower than what is left out where alpha or beta is below 1.
+        Small {
+            change: |m| m["band"]["high_hz"] = json!(21.25),
+            ..Small::of_sets("narrow_beta", "sbeta", vec![vec![0.5, 1.0], vec![0.5, 0.5]])
+        },
         Small::of_models("clipped_cepstrum", vec![("mfcc", cepstrum(&wild, 26.0, 0.0))]),
         Small::of_models("narrow_filters", vec![("mfcc", cepstrum(&tilted, 128.0, 0.0))]),
         Small::of_models("filters_without_weight", vec![("mfcc", cepstrum(&tilted, 128.0, 2.0))]),

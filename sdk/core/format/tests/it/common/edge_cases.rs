@@ -564,6 +564,10 @@ fn list_of_bytes(block: &[u8]) -> Stored {
     of_one_field(json!({ "u8": { "scale": 1 } }), true, block)
 }
 
+fn scalar(block: &[u8]) -> Stored {
+    of_one_field(json!({ "u8": { "scale": 1 } }), false, block)
+}
+
 fn packed(block: &[u8]) -> Stored {
     of_one_field(json!({ "packed": { "scale": 1 } }), true, block)
 }
@@ -826,7 +830,8 @@ fn signatures() -> Vec<u8> {
     // S is the hash of the point, the key and the text, times the secret key.
     let of_point = "e603dc14b47a7c9135f2a2f1e110450df04a11c23a3eb504cbedc8391c9be00b";
     let key = "7767a3242dc9b58bbc68488c1265cc6cc5f26c6f3c88a5d55e901b0734dca572";
-    let mut capital = Plugin::new("org.htex.sbeta", "1.0.0", module).signed(&[7; 32]);
+    let mut capital = Plugin::new("org.htex.sbeta", "1.0.0", module)
+        .signed(&htex_format::signing::SecretKey::from_bytes(&[7; 32]));
     let signature = capital.signature.as_mut().unwrap();
     signature.public_key.make_ascii_uppercase();
     signature.ed25519.make_ascii_uppercase();
@@ -968,6 +973,29 @@ pub(super) fn limited() -> Vec<(&'static str, Vec<u8>, Limits)> {
             "parameters_invalid_length_and_limit",
             with_representations(&[list_of_bytes(&[9, 1])], |_| ()),
             Limits { values: 2, ..default },
+        ),
+        // Numbers of a block with a finding count for the next one, and those of a list that
+        // exceeds the limit do not.
+        (
+            "parameters_invalid_and_counted",
+            with_representations(
+                &[list_of_bytes(&[2, 1, 2, 9]), list_of_bytes(&[2, 1, 2])],
+                |_| (),
+            ),
+            Limits { values: 3, ..default },
+        ),
+        (
+            "values_too_many_and_not_counted",
+            with_representations(
+                &[list_of_bytes(&[4, 1, 2, 3, 4]), list_of_bytes(&[3, 1, 2, 3])],
+                |_| (),
+            ),
+            Limits { values: 3, ..default },
+        ),
+        (
+            "values_too_many_scalar",
+            with_representations(&[list_of_bytes(&[1, 1]), scalar(&[])], |_| ()),
+            Limits { values: 1, ..default },
         ),
     ]
 }

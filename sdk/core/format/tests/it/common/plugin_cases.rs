@@ -11,7 +11,8 @@ use super::{asset, sbeta};
 pub(super) fn with_plugin(change: impl Fn(&mut Asset)) -> Vec<u8> {
     let mut asset = asset(1, vec![sbeta(1)]);
     let module = b"\0asm\x01\0\0\0".to_vec();
-    let plugin = Plugin::new("org.htex.sbeta", "1.0.0", &module).signed(&[7; 32]);
+    let plugin = Plugin::new("org.htex.sbeta", "1.0.0", &module)
+        .signed(&htex_format::signing::SecretKey::from_bytes(&[7; 32]));
     asset.manifest.plugins.push(plugin);
     asset.plugins.push(module);
     change(&mut asset);

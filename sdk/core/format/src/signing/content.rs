@@ -1,0 +1,194 @@
+//! A signature of a file, in a file of its own.
+
+use std::fmt::{Display, Formatter};
+
+use serde::{Deserialize, Serialize};
+
+use super::{PublicKey, SecretKey};
+use crate::ReadError;
+
+/// What is added to the name of a file for the name of its signature: `oak.htex.sig`.
+pub const SIGNATURE_EXTENSION: &str = "sig";
+
+/// The largest file with a signature, bytes.
+const MOST_BYTES: usize = 4096;
+
+/// The kind of a signed file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SignedKind {
+    /// A model, as a module or as a native library.
+    Plugin,
+    /// A native library with a device.
+    Device,
+    Asset,
+    Library,
+}
+
+impl SignedKind {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plugin => "plugin",
+            Self::Device => "device",
+            Self::Asset => "asset",
+            Self::Library => "library",
+        }
+    }
+}
+
+impl Display for SignedKind {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What a signature vouches for (`spec/signature-1.md`).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SignedContent {
+    pub kind: SignedKind,
+    /// The id of a model or a device, or the name of an asset or a library.
+    pub name: String,
+    /// The version of a model, a device or a library, else empty.
+    pub version: String,
+    /// BLAKE3 in hexadecimal digits: of the file, but of a library's index if it is a library. The
+    /// index has the hash of each texture.
+    pub blake3: String,
+}
+
+impl SignedContent {
+    /// Returns what a signature of a plugin or a device vouches for.
+    pub fn plugin(kind: SignedKind, id: &str, version: &str, file: &[u8]) -> Self {
+        let blake3 = blake3::hash(file).to_hex().to_string();
+        Self { kind, name: id.to_owned(), version: version.to_owned(), blake3 }
+    }
+
+    /// Returns what a signature of an asset's file vouches for.
+    ///
+    /// # Errors
+    /// If the bytes are not an asset.
+    pub fn asset(file: &[u8]) -> Result<Self, ReadError> {
+        let asset = crate::Asset::from_bytes(file)?;
+        Ok(Self::plugin(SignedKind::Asset, &asset.manifest.name, "", file))
+    }
+
+    /// Returns what a signature of a library vouches for.
+    #[cfg(feature = "library")]
+    pub fn library(index: &crate::library::Index) -> Self {
+        Self {
+            kind: SignedKind::Library,
+            name: index.name().to_owned(),
+            version: index.metadata().version.clone().unwrap_or_default(),
+            blake3: blake3::Hash::from_bytes(index.blake3()).to_hex().to_string(),
+        }
+    }
+
+    pub fn sign(self, key: &SecretKey) -> FileSignature {
+        let ed25519 = key.sign(&self.text());
+        FileSignature {
+            htex_signature: VERSION.to_owned(),
+            content: self,
+            public_key: key.public(),
+            ed25519,
+        }
+    }
+
+    /// Returns the text that is signed: `htex KIND 1`, the name, the version and the hash, each
+    /// followed by a zero byte. The kind comes first, so that a signature is valid for one kind.
+    pub(super) fn text(&self) -> Vec<u8> {
+        let mut text = format!("htex {} 1\0", self.kind).into_bytes();
+        for part in [&self.name, &self.version, &self.blake3] {
+            text.extend_from_slice(part.as_bytes());
+            text.push(0);
+        }
+        text
+    }
+}
+
+/// The version of the file.
+const VERSION: &str = "1.0";
+
+/// A signature of a file: the content of `FILE.sig`.
+///
+/// ```
+/// use htex_format::signing::{FileSignature, SecretKey, SignedContent, SignedKind};
+/// let key = SecretKey::from_bytes(&[7; 32]);
+/// let content = SignedContent::plugin(SignedKind::Plugin, "org.example.felt", "1.0.0", b"\0asm...");
+/// let text = content.clone().sign(&key).to_json();
+/// let signature = FileSignature::from_json(text.as_bytes())?;
+/// assert_eq!(signature.check(&content)?, key.public());
+/// # Ok::<(), htex_format::signing::SignatureError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileSignature {
+    /// `1.0`.
+    pub htex_signature: String,
+    #[serde(flatten)]
+    pub content: SignedContent,
+    pub public_key: PublicKey,
+    /// The signature, in 128 hexadecimal digits.
+    pub ed25519: String,
+}
+
+impl FileSignature {
+    /// Parses a file with a signature.
+    ///
+    /// # Errors
+    /// If the bytes are not such a file of version 1.
+    pub fn from_json(bytes: &[u8]) -> Result<Self, SignatureError> {
+        if bytes.len() > MOST_BYTES {
+            return Err(SignatureError::Malformed(format!("more than {MOST_BYTES} bytes")));
+        }
+        let signature: Self = serde_json::from_slice(bytes)
+            .map_err(|error| SignatureError::Malformed(error.to_string()))?;
+        let major = signature.htex_signature.split('.').next();
+        if major != Some("1") {
+            return Err(SignatureError::Newer(signature.htex_signature));
+        }
+        Ok(signature)
+    }
+
+    pub fn to_json(&self) -> String {
+        // All keys are texts, so this cannot fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Returns the key that signed this content.
+    ///
+    /// # Errors
+    /// If the signature is of another content, or is invalid.
+    pub fn check(&self, content: &SignedContent) -> Result<PublicKey, SignatureError> {
+        let told = &self.content;
+        let parts = [
+            ("kind", told.kind.name(), content.kind.name()),
+            ("name", &told.name, &content.name),
+            ("version", &told.version, &content.version),
+            ("contents", &told.blake3, &content.blake3),
+        ];
+        if let Some((part, signed, found)) = parts.into_iter().find(|(_, a, b)| a != b) {
+            let (signed, found) = (signed.to_owned(), found.to_owned());
+            return Err(SignatureError::Other { part, signed, found });
+        }
+        if self.public_key.has_signed(&content.text(), &self.ed25519) {
+            Ok(self.public_key)
+        } else {
+            Err(SignatureError::Invalid)
+        }
+    }
+}
+
+/// Why a signature does not vouch for a file.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SignatureError {
+    #[error("this is no signature of htex: {0}")]
+    Malformed(String),
+    #[error("the signature has version {0}, and this program reads version 1; update the program")]
+    Newer(String),
+    /// It is a signature of something else.
+    #[error(
+        "the signature is for another {part}: `{signed}`, and this file has `{found}`; it was changed after it was signed, or this is another file's signature"
+    )]
+    Other { part: &'static str, signed: String, found: String },
+    #[error("the signature is not one that its key made; do not trust this file")]
+    Invalid,
+}

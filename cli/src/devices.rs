@@ -58,8 +58,18 @@ impl DeviceArgs {
 
     /// Returns the devices as [`Self::devices`] does, but prints nothing.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
+        Ok(Devices::search(builtin(), &self.search())?)
+    }
+
+    /// Returns the devices without loading the libraries in folders: they can be listed only.
+    pub(crate) fn described(&self) -> Result<Devices, Failure> {
+        let search = Search { only_descriptors: true, ..self.search() };
+        Ok(Devices::search(builtin(), &search)?)
+    }
+
+    fn search(&self) -> Search {
         let (files, dirs) = (self.device_file.clone(), self.device_dir.clone());
-        Ok(Devices::search(builtin(), &Search { files, dirs, ..Search::default() })?)
+        Search { files, dirs, ..Search::default() }
     }
 
     /// Returns the reason why no output of this name exists, if this build leaves it out.

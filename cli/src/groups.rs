@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use clap::Command;
 
 /// Each group's heading and its subcommands, in the order of the help.
-const GROUPS: [(&str, &[&str]); 7] = [
+const GROUPS: [(&str, &[&str]); 8] = [
     (
         "Make textures",
         &["demo", "simulate", "process", "fit", "make", "mix", "edit", "import", "tradeoff"],
@@ -14,6 +14,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Play", &["synth", "play", "render", "plan", "gain", "export", "bake"]),
     ("Libraries", &["build", "lib"]),
     ("Plugins and devices", &["plugin", "device", "conformance"]),
+    ("Signatures", &["key", "sign", "verify"]),
     ("Laboratory", &["record", "response", "study", "studio"]),
     ("Tools", &["completions", "man", "schema"]),
 ];

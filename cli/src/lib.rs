@@ -19,6 +19,7 @@ mod groups;
 #[cfg(feature = "lab")]
 mod inputs;
 mod invocation;
+mod keys;
 mod located;
 mod motions;
 mod output;

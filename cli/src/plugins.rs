@@ -62,6 +62,12 @@ impl PluginArgs {
         self.search(&[])
     }
 
+    /// Returns the models without loading the native libraries in folders: they can be listed only.
+    /// Prints nothing.
+    pub(crate) fn described(&self) -> Result<Registry> {
+        Ok(Registry::search(&self.places(&[]).with_only_descriptors(true))?)
+    }
+
     /// Returns the model in the file of this name, if there is such a file, else the model with
     /// this short name or id.
     pub(crate) fn find(&self, name: &str) -> Result<LoadedModel> {
@@ -77,12 +83,14 @@ impl PluginArgs {
     }
 
     fn search(&self, files: &[PathBuf]) -> Result<Registry> {
-        Ok(Registry::search(
-            &Search::default()
-                .with_files([&self.plugin[..], files].concat())
-                .with_dirs(self.plugin_dir.clone())
-                .with_limits(self.limits()),
-        )?)
+        Ok(Registry::search(&self.places(files))?)
+    }
+
+    fn places(&self, files: &[PathBuf]) -> Search {
+        Search::default()
+            .with_files([&self.plugin[..], files].concat())
+            .with_dirs(self.plugin_dir.clone())
+            .with_limits(self.limits())
     }
 }
 

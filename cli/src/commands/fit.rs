@@ -5,13 +5,14 @@ use htex_author::recording::format_names;
 use htex_author::report::{TextureReport, texture_report};
 use htex_author::settings::{FitSettings, Metadata};
 use htex_author::{AssetRequest, AuthorError, FittedAsset, embed_plugins, fit_asset};
-use htex_base::files::{AtFile, FileError};
+use htex_base::files::FileError;
 use htex_host::Registry;
 
 use crate::assets::{AssetSummary, check_metadata, write_asset};
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::grid::grid_plot;
 use crate::invocation::{command_line, tool};
+use crate::keys::KeyRing;
 use crate::located;
 use crate::output::{note, show, warn, write_file};
 use crate::outputs::check_outputs;
@@ -49,9 +50,10 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "WASM", display_order = 5)]
     embed_plugin: Vec<PathBuf>,
 
-    /// Sign the embedded modules with the ed25519 secret key in this file (32 bytes)
-    #[arg(long, value_name = "FILE", requires = "embed_plugin", display_order = 6)]
-    sign_with: Option<PathBuf>,
+    /// Sign the embedded modules with this key of yours (`htex key list`), or with the ed25519
+    /// secret key in this file (32 bytes)
+    #[arg(long, value_name = "NAME|FILE", requires = "embed_plugin", display_order = 6)]
+    sign_with: Option<String>,
 
     /// Draw the grid that --grid fits, as an SVG picture over speed and force. The picture shows
     /// the parts of the recordings with steady motion, the fitted conditions with their
@@ -79,7 +81,8 @@ pub(crate) struct Fit {
 
 impl Fit {
     pub(crate) fn run(self) -> Result {
-        let files = self.recordings.iter().chain(&self.embed_plugin).chain(&self.sign_with);
+        let key = self.sign_with.as_ref().map(PathBuf::from);
+        let files = self.recordings.iter().chain(&self.embed_plugin).chain(&key);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
         let outputs = [&self.output].into_iter().chain(&self.report).chain(&self.grid_svg);
         check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
@@ -145,7 +148,8 @@ impl Fit {
 
     /// Embeds the modules of fitted models in the asset.
     fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<()> {
-        let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
+        let secret_key = self.sign_with.as_deref();
+        let secret_key = secret_key.map(|name| KeyRing::new()?.secret(Some(name))).transpose()?;
         // Only models that were fitted can be embedded, so this follows the fit.
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
         embedded.map_err(|error| match error {
@@ -183,14 +187,4 @@ pub(crate) fn all_named_were_fitted(fit: &FitSettings, skipped: &[(String, Strin
             named.join("; ")
         )))
     }
-}
-
-/// Reads an ed25519 secret key.
-fn secret_key(file: &Path) -> Result<[u8; 32]> {
-    let bytes = std::fs::read(file).reading(file)?;
-    let len = bytes.len();
-    bytes.try_into().map_err(|_| {
-        let file = file.display();
-        Failure::Usage(format!("--sign-with {file}: {len} bytes; an ed25519 secret key has 32"))
-    })
 }

@@ -17,6 +17,7 @@ mod gain;
 mod guard;
 mod import;
 mod info;
+mod key;
 mod lib;
 #[cfg(feature = "build")]
 mod library_build;
@@ -33,6 +34,7 @@ mod render;
 #[cfg(feature = "lab")]
 mod response;
 mod schema;
+mod sign;
 mod simulate;
 mod spectrum;
 #[cfg(feature = "lab")]
@@ -42,6 +44,7 @@ mod study;
 mod synth;
 mod tradeoff;
 mod validate;
+mod verify;
 
 /// Defines an enum of subcommands, each of which runs itself.
 macro_rules! subcommands {
@@ -100,6 +103,9 @@ subcommands! {
         Man(manual::Manual),
         Schema(schema::Schema),
         Conformance(conformance::Conformance),
+        Key(key::Key),
+        Sign(sign::Sign),
+        Verify(verify::Verify),
         Plugin(plugin::Plugin),
         Device(device::Device),
     }

@@ -27,6 +27,8 @@ pub mod abi;
 mod adapter;
 mod capabilities;
 mod crossing;
+#[cfg(feature = "descriptions")]
+mod described;
 mod descriptor;
 mod direct;
 mod error;

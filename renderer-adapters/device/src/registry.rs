@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_base::native::folders::{data, libraries_in, listed};
+use htex_base::native::folders::{data, libraries_in, listed, system};
 
 use crate::{Adapter, Descriptor, DeviceError, Direction, Input, NativeAdapter, Settings};
 
@@ -15,8 +15,8 @@ const VARIABLE: &str = "HTEX_DEVICE_PATH";
 const FOLDER: &str = "htex/devices";
 
 /// Where to search for native libraries of devices. The search has this order: `files`, `dirs`, the
-/// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, and the adapters
-/// built into the program. If two adapters of one direction have the same id, the adapter that is
+/// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, the folders of all
+/// users, and the adapters built into the program. If two adapters of one direction have the same id, the adapter that is
 /// found first is used.
 #[derive(Debug, Clone)]
 pub struct Search {
@@ -28,14 +28,38 @@ pub struct Search {
     /// Whether to search the folders that the environment variable names.
     pub env: bool,
     /// Whether to search `htex/devices` in the user's data folder (`$XDG_DATA_HOME`, else
-    /// `~/.local/share`).
+    /// `~/.local/share`), and then in the folders of all users (`$XDG_DATA_DIRS`, else
+    /// `/usr/local/share` and `/usr/share`).
     pub user_dir: bool,
+    /// Whether to read only the descriptors beside the libraries in folders. No library is loaded
+    /// then, and the devices found so can be listed, but not opened.
+    #[cfg(feature = "descriptions")]
+    pub only_descriptors: bool,
 }
 
 impl Default for Search {
     /// Searches the environment variable and the user's folder; `files` and `dirs` are empty.
     fn default() -> Self {
-        Self { files: Vec::new(), dirs: Vec::new(), env: true, user_dir: true }
+        Self {
+            files: Vec::new(),
+            dirs: Vec::new(),
+            env: true,
+            user_dir: true,
+            #[cfg(feature = "descriptions")]
+            only_descriptors: false,
+        }
+    }
+}
+
+impl Search {
+    /// Loads a library of a folder. Returns `None` if it must not be loaded and no descriptor is
+    /// beside it.
+    fn load(&self, file: &Path) -> Result<Option<AdapterEntry>, DeviceError> {
+        #[cfg(feature = "descriptions")]
+        if self.only_descriptors {
+            return crate::described::adapter(file);
+        }
+        AdapterEntry::load(file).map(Some)
     }
 }
 
@@ -113,6 +137,9 @@ pub enum Note {
     /// A library file could not be loaded, or a folder could not be read, and the user did not name
     /// this file or folder explicitly.
     LeftOut { error: DeviceError },
+    /// A library in a folder that carries no descriptor, so that it cannot be listed without
+    /// running it.
+    Undescribed { library: PathBuf },
 }
 
 impl std::fmt::Display for Note {
@@ -126,6 +153,13 @@ impl std::fmt::Display for Note {
                 "{direction} `{name}` means {means}; write `{other}` in full for the other one"
             ),
             Self::LeftOut { error } => write!(f, "a device is left out: {error}"),
+            Self::Undescribed { library } => {
+                let library = library.display();
+                write!(
+                    f,
+                    "device {library} was not loaded, and no descriptor is beside it; `htex plugin export {library}` writes one"
+                )
+            }
         }
     }
 }
@@ -158,11 +192,12 @@ impl Devices {
             devices.add(AdapterEntry::load(path)?);
         }
         for dir in &search.dirs {
-            devices.add_folder(dir)?;
+            devices.add_folder(dir, search)?;
         }
         let listed = search.env.then(|| listed(VARIABLE)).into_iter().flatten();
-        for dir in listed.chain(data(FOLDER).filter(|_| search.user_dir)) {
-            if let Err(error) = devices.add_folder(&dir) {
+        let own = data(FOLDER).into_iter().chain(system(FOLDER)).filter(|_| search.user_dir);
+        for dir in listed.chain(own) {
+            if let Err(error) = devices.add_folder(&dir, search) {
                 devices.notes.push(Note::LeftOut { error });
             }
         }
@@ -245,14 +280,15 @@ impl Devices {
         }
     }
 
-    fn add_folder(&mut self, dir: &Path) -> Result<(), DeviceError> {
+    fn add_folder(&mut self, dir: &Path, search: &Search) -> Result<(), DeviceError> {
         let files = libraries_in(dir, None).map_err(|error| DeviceError::File {
             path: dir.display().to_string(),
             what: error.to_string(),
         })?;
         for file in files {
-            match AdapterEntry::load(&file) {
-                Ok(entry) => self.add(entry),
+            match search.load(&file) {
+                Ok(Some(entry)) => self.add(entry),
+                Ok(None) => self.notes.push(Note::Undescribed { library: file }),
                 Err(error) => self.notes.push(Note::LeftOut { error }),
             }
         }

@@ -15,8 +15,11 @@ use crate::output::{print, print_json, tamed};
 /// that htex found but does not use.
 ///
 /// htex searches for adapters in this order: --device-file, --device-dir, the folders in
-/// HTEX_DEVICE_PATH, the user's folder, the adapters built into this program. If two outputs or two
-/// inputs have the same id, htex uses only the first that it finds.
+/// HTEX_DEVICE_PATH, the user's folder, the folders of all users, the adapters built into this
+/// program. If two outputs or two inputs have the same id, htex uses only the first that it finds.
+///
+/// The command loads no library in a folder: it reads the descriptors beside the libraries, which
+/// `htex plugin export` and `htex plugin install` write.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
@@ -40,7 +43,7 @@ impl List {
     }
 
     fn list(&self) -> Result<Exit, Failure> {
-        let devices = self.devices.devices_quietly()?;
+        let devices = self.devices.described()?;
         let notes = devices.notes().iter().map(ToString::to_string);
         let directions = [Direction::Output, Direction::Input].into_iter();
         if self.json {

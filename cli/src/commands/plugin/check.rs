@@ -37,8 +37,9 @@ pub(crate) struct Check {
     #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
-    /// Compare the model with the same model in this file. If the model is a native library, give a
-    /// WASM module, and the reverse [default: such a file next to the model, if there is one]
+    /// Compare the model with this file: an older version of it, whose assets it must still play
+    /// (check `successor`), or the same version as a native library or as a WASM module (check
+    /// `twin`) [default: a file of the other kind next to the model, if there is one]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
 }

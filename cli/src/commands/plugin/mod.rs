@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod export;
 mod info;
 mod list;
 mod new;
@@ -23,6 +24,7 @@ subcommands! {
         List(list::List),
         Info(info::Info),
         Check(check::Check),
+        Export(export::Export),
         New(new::New),
         Bench(bench::Bench),
         #[command(hide = true)]

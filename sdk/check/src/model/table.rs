@@ -3,7 +3,7 @@
 use crate::model::case::Case;
 use crate::model::checks::{
     abi, allocation, arrays, change, fit, fuzz, magnitude, motion, often, range, refusal, repeat,
-    resources, sound, together, twin, waiting,
+    resources, sound, successor, together, twin, waiting,
 };
 
 crate::harness::checks! { Case;
@@ -187,4 +187,9 @@ crate::harness::checks! { Case;
         "The given other file of the model, or the file of the other kind with the same name in the same folder: equal id and \
          version; equal parameters for every reference within 1e-6; samples within 1e-4 of unit RMS. A warning if \
          they are not bit-identical.";
+    "successor" needs ["render"] successor::keeps:
+        "A newer version plays what an older version played.",
+        "The given other file, if it is an older version of the model with the same major version: every field of the older one is \
+         there with its unit, at least its range and at least its length; every new field has a default; for the older version's fit \
+         of every reference, with these defaults, samples within 1e-4 of unit RMS. A warning if they are not bit-identical.";
 }

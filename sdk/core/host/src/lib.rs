@@ -22,6 +22,8 @@
 mod builtin;
 mod clock;
 mod decimal;
+#[cfg(feature = "descriptions")]
+mod described;
 mod descriptor;
 mod error;
 mod limits;

@@ -65,7 +65,11 @@ impl LoadedModel {
             TextError::Broken(what) => broken(call, what),
         })?;
         let descriptor = read_descriptor(&json).map_err(|error| broken(call, error.to_string()))?;
-        Ok(Self { descriptor: Arc::new(descriptor), origin: Arc::new(origin), raw })
+        Ok(Self::of(origin, descriptor, raw))
+    }
+
+    pub(crate) fn of(origin: Origin, descriptor: Descriptor, raw: Arc<dyn RawModel>) -> Self {
+        Self { descriptor: Arc::new(descriptor), origin: Arc::new(origin), raw }
     }
 
     /// Loads a model from a file. A WASM module (`.wasm`) runs in a sandbox with the default

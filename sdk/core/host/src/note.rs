@@ -42,6 +42,9 @@ pub enum Note {
     },
     /// A file in a plugin folder could not be loaded.
     Broken { path: PathBuf, error: HostError },
+    /// A native library in a plugin folder that carries no descriptor, so that it cannot be listed
+    /// without running it.
+    Undescribed { path: PathBuf },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's plugin folder, could not be read.
     Folder { path: PathBuf, what: String },
 }
@@ -59,6 +62,13 @@ impl std::fmt::Display for Note {
             }
             Self::Broken { path, error } => {
                 write!(f, "plugin {} is left out: {error}", path.display())
+            }
+            Self::Undescribed { path } => {
+                let path = path.display();
+                write!(
+                    f,
+                    "plugin {path} was not loaded, and no descriptor is beside it; `htex plugin export {path}` writes one"
+                )
             }
             Self::Folder { path, what } => {
                 write!(f, "plugin folder {}: {what}", path.display())

@@ -57,6 +57,7 @@ pub(crate) enum Rank {
     Embedded,
     Folder,
     User,
+    System,
     Builtin,
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_base::native::folders::{data, libraries_in, listed};
+use htex_base::native::folders::{data, libraries_in, listed, system};
 
 use crate::registry::Rank;
 use crate::{HostError, LoadedModel, Note, Registry, WasmLimits};
@@ -13,7 +13,7 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 const FOLDER: &str = "htex/plugins";
 
 /// The places to search for models, in order of precedence: `files`, models embedded in an asset,
-/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version
+/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, the folders of all users, built-in models. From `dirs` on, a newer version
 /// takes precedence over an older version with the same major version, even if the older version is
 /// in an earlier place ([`Registry`]).
 ///
@@ -40,10 +40,15 @@ pub struct Search {
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
     /// Whether to search `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, or
-    /// `~/.local/share` if that is not set).
+    /// `~/.local/share` if that is not set), and then in the folders of all users
+    /// (`$XDG_DATA_DIRS`, or `/usr/local/share` and `/usr/share`).
     pub user_dir: bool,
     /// Whether to include the models linked into this program.
     pub builtin: bool,
+    /// Whether to read only the descriptors of plugins in folders. No native library is loaded
+    /// then, and the models found so can be listed, but not called.
+    #[cfg(feature = "descriptions")]
+    pub only_descriptors: bool,
     pub limits: WasmLimits,
 }
 
@@ -57,6 +62,8 @@ impl Default for Search {
             env: true,
             user_dir: true,
             builtin: true,
+            #[cfg(feature = "descriptions")]
+            only_descriptors: false,
             limits: WasmLimits::default(),
         }
     }
@@ -84,6 +91,13 @@ impl Search {
         with_limits(limits: WasmLimits);
     }
 
+    /// Sets whether only the descriptors of plugins in folders are read.
+    #[cfg(feature = "descriptions")]
+    #[must_use]
+    pub fn with_only_descriptors(self, only_descriptors: bool) -> Self {
+        Self { only_descriptors, ..self }
+    }
+
     /// See [`Registry::search`].
     pub(crate) fn run(&self) -> Result<Registry, HostError> {
         let mut registry = Registry::empty(&self.limits);
@@ -108,6 +122,9 @@ impl Search {
         if let Some(dir) = data(FOLDER).filter(|_| self.user_dir) {
             self.add_folder(&mut registry, Rank::User, &dir);
         }
+        for dir in system(FOLDER).iter().filter(|_| self.user_dir) {
+            self.add_folder(&mut registry, Rank::System, dir);
+        }
         if self.builtin {
             registry.add_builtin();
         }
@@ -125,10 +142,25 @@ impl Search {
         }
     }
 
+    /// Loads a plugin of a folder. Returns `None` if it is a native library that must not be loaded
+    /// and carries no descriptor.
+    fn load(&self, path: &Path, registry: &Registry) -> Result<Option<LoadedModel>, HostError> {
+        #[cfg(feature = "descriptions")]
+        if self.only_descriptors {
+            let described = crate::described::model(path)?;
+            let is_module = path.extension().is_some_and(|extension| extension == "wasm");
+            if described.is_some() || !is_module {
+                return Ok(described);
+            }
+        }
+        LoadedModel::from_file_in(path, registry.sandbox()).map(Some)
+    }
+
     fn add_all(&self, registry: &mut Registry, rank: Rank, files: Vec<PathBuf>) {
         for path in files {
-            match LoadedModel::from_file_in(&path, registry.sandbox()) {
-                Ok(model) => registry.add(rank, model),
+            match self.load(&path, registry) {
+                Ok(Some(model)) => registry.add(rank, model),
+                Ok(None) => registry.note(Note::Undescribed { path }),
                 Err(error) => registry.note(Note::Broken { path, error }),
             }
         }

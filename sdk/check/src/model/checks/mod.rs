@@ -14,6 +14,7 @@ pub(crate) mod refusal;
 pub(crate) mod repeat;
 pub(crate) mod resources;
 pub(crate) mod sound;
+pub(crate) mod successor;
 pub(crate) mod together;
 pub(crate) mod twin;
 pub(crate) mod waiting;

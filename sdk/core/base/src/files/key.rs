@@ -48,7 +48,7 @@ impl Key {
     /// # Errors
     /// Returns an error if the system provides no random numbers.
     pub fn passing() -> io::Result<Self> {
-        Ok(Self(random()?))
+        Ok(Self(random_key()?))
     }
 
     /// Returns the keyed hash of a file's name and content.
@@ -67,7 +67,7 @@ impl Key {
 fn make(folder: &Path, path: &Path) -> io::Result<()> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let key = random()?;
+    let key = random_key()?;
     let mut beside = path.as_os_str().to_owned();
     // The name is unique, so that processes and threads that create the same key do not collide.
     beside.push(format!(".{}-{count}.part", std::process::id()));
@@ -90,7 +90,11 @@ fn make(folder: &Path, path: &Path) -> io::Result<()> {
     }
 }
 
-fn random() -> io::Result<[u8; blake3::KEY_LEN]> {
+/// Returns 32 random bytes for a key.
+///
+/// # Errors
+/// Returns an error if the system provides no random numbers.
+pub fn random_key() -> io::Result<[u8; blake3::KEY_LEN]> {
     let mut key = [0; blake3::KEY_LEN];
     getrandom::fill(&mut key).map_err(io::Error::other)?;
     Ok(key)

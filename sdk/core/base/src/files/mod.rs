@@ -46,7 +46,7 @@ use tempfile::NamedTempFile;
 pub use batch::Batch;
 pub use error::{AtFile, FileError, FileProblem};
 #[cfg(feature = "key")]
-pub use key::Key;
+pub use key::{Key, random_key};
 pub use lines::bounded_lines;
 pub use own_folder::OwnFolder;
 pub use regular::{check_regular_at, open_regular, read_regular, read_regular_text};

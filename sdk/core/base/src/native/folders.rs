@@ -40,8 +40,30 @@ pub fn relative() -> Vec<(&'static str, PathBuf)> {
 /// Returns a folder in the user's data folder, if it exists, e.g. `htex/plugins` or
 /// `htex/devices`.
 pub fn data(folder: &str) -> Option<PathBuf> {
-    let data = base("XDG_DATA_HOME", ".local/share")?.join(folder);
-    data.exists().then_some(data)
+    data_or_new(folder).filter(|data| data.exists())
+}
+
+/// Returns a folder in the user's data folder as [`data`] does, also if it does not exist.
+pub fn data_or_new(folder: &str) -> Option<PathBuf> {
+    Some(base("XDG_DATA_HOME", ".local/share")?.join(folder))
+}
+
+/// Returns the folders of this name for all users of this machine that exist: in the folders of
+/// `$XDG_DATA_DIRS`, or in `/usr/local/share` and `/usr/share` if the variable is not set. On
+/// Windows, in `%PROGRAMDATA%`; on macOS, in `/Library/Application Support`.
+pub fn system(folder: &str) -> Vec<PathBuf> {
+    let of_variable: Vec<PathBuf> =
+        listed("XDG_DATA_DIRS").into_iter().filter(|dir| dir.is_absolute()).collect();
+    let all = if !of_variable.is_empty() {
+        of_variable
+    } else if cfg!(windows) {
+        absolute("PROGRAMDATA").into_iter().collect()
+    } else if cfg!(target_os = "macos") {
+        vec!["/Library/Application Support".into()]
+    } else {
+        vec!["/usr/local/share".into(), "/usr/share".into()]
+    };
+    all.into_iter().map(|dir| dir.join(folder)).filter(|dir| dir.exists()).collect()
 }
 
 /// Returns the folders in an environment variable, whose value lists folders in the same way as

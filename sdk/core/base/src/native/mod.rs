@@ -8,6 +8,8 @@
 //! without a folder means a file in the current folder. There are two exceptions, for which the
 //! system's loader searches: the library of NI-DAQmx, and a `driver` setting that names no file.
 
+#[cfg(feature = "key")]
+pub mod description;
 pub mod folders;
 
 pub use crate::table_of_symbols;

@@ -8,4 +8,4 @@ mod trusted;
 pub use content::{FileSignature, SIGNATURE_EXTENSION, SignatureError, SignedContent, SignedKind};
 pub use key::{PublicKey, SecretKey};
 pub(crate) use plugin::WASM_MAGIC;
-pub use trusted::{TrustedKey, TrustedKeys};
+pub use trusted::{TrustedKey, TrustedKeys, check_key_name};

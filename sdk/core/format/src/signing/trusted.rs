@@ -84,7 +84,10 @@ impl TrustedKeys {
 }
 
 /// Refuses a name that is no name of a key. Such a name is also a safe name for a file.
-pub(super) fn check_key_name(name: &str) -> Result<(), String> {
+///
+/// # Errors
+/// If it is none. The text says what a name is.
+pub fn check_key_name(name: &str) -> Result<(), String> {
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
     let is_name = name.len() <= 64
         && name.bytes().all(plain)

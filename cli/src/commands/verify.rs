@@ -1,0 +1,170 @@
+use std::ffi::OsStr;
+use std::fmt::{Display, Formatter};
+use std::path::Path;
+
+use clap::Args;
+use htex_base::finding::plain;
+use htex_base::storage::{Location, Storage};
+use htex_format::Limits;
+use htex_format::library::{Library, split_address};
+use htex_format::signing::{
+    FileSignature, PublicKey, SIGNATURE_EXTENSION, SignedContent, SignedKind,
+};
+use serde::Serialize;
+
+use super::sign::content_of;
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::keys::{KeyRing, Signer, plugin_content};
+use crate::output::{print, print_json};
+
+/// Check who signed assets, libraries and plugins
+///
+/// The command reads FILE and FILE.sig. The exit status is 1 unless each file has a valid signature
+/// of a key that you trust (`htex key trust`), or with --signed-by of this key. A texture of a
+/// library (`cloth.htexlib#oak`) is signed if its library is: the command then reads the index and
+/// this texture only. No plugin is loaded.
+#[derive(Args)]
+pub(crate) struct Verify {
+    /// Assets, libraries, textures of libraries and plugins, by path or URI
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<String>,
+
+    /// The key that must have signed, by the name that you gave it or in hexadecimal digits
+    #[arg(long, value_name = "NAME|KEY")]
+    signed_by: Option<String>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is known of a file's signature.
+#[derive(Serialize)]
+struct Verified {
+    file: String,
+    /// Whether the file is signed as asked.
+    verified: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<SignedKind>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    version: Option<String>,
+    /// `null` if there is no signature.
+    signer: Option<Signer>,
+}
+
+impl Verify {
+    pub(crate) fn run(self) -> Result {
+        let ring = KeyRing::new()?;
+        let wanted = self.signed_by.as_deref().map(|name| ring.signer(name)).transpose()?;
+        let verified: Result<Vec<Verified>> =
+            self.files.iter().map(|file| verify(&ring, file, wanted)).collect();
+        let verified = verified?;
+        if self.json {
+            print_json(&verified)?;
+        } else {
+            verified.iter().try_for_each(|one| print(&one.to_string()))?;
+        }
+        Ok(Exit::ok_if(verified.iter().all(|one| one.verified)))
+    }
+}
+
+fn verify(ring: &KeyRing, argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
+    let (text, texture) = match split_address(argument) {
+        Some((library, texture)) => (library, Some(texture)),
+        None => (argument, None),
+    };
+    let location = Location::parse(OsStr::new(text))?;
+    let beside = Location::parse(OsStr::new(&format!("{text}.{SIGNATURE_EXTENSION}")))?;
+    let storage = Storage::from_environment()?;
+    if !storage.exists(&location)? {
+        return Err(Failure::Other(format!("{}: there is no such file", plain(text))));
+    }
+    let mut found = Verified {
+        file: argument.to_owned(),
+        verified: false,
+        kind: None,
+        name: None,
+        version: None,
+        signer: None,
+    };
+    if !storage.exists(&beside)? {
+        return Ok(found);
+    }
+    let bytes = storage.read(&beside, MOST_SIGNATURE_BYTES)?;
+    let signer = match FileSignature::from_json(&bytes) {
+        Err(error) => Signer::Invalid { problem: error.to_string() },
+        Ok(signature) => {
+            let content = content(&storage, &location, &signature)?;
+            found.kind = Some(content.kind);
+            found.name = Some(content.name.clone());
+            found.version = Some(content.version.clone()).filter(|version| !version.is_empty());
+            Signer::of(ring, &bytes, &content)?
+        }
+    };
+    found.verified = match wanted {
+        Some(key) => signer.public_key() == Some(key) && !matches!(signer, Signer::Revoked { .. }),
+        None => signer.is_trusted(),
+    };
+    if let (true, Some(texture)) = (found.verified, texture) {
+        // The index, which is signed, has the hash of the texture.
+        let library =
+            Library::open_located(&storage, &location).map_err(for_file(text.as_ref()))?;
+        library.get(texture).map_err(for_file(text.as_ref()))?;
+        found.name = Some(format!("{}#{texture}", library.name()));
+    }
+    found.signer = Some(signer);
+    Ok(found)
+}
+
+/// Larger than any signature; the reader of signatures refuses what is too large.
+const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
+
+/// Returns what the signature of a file should be of.
+fn content(
+    storage: &Storage,
+    location: &Location,
+    signature: &FileSignature,
+) -> Result<SignedContent> {
+    let shown = location.to_string();
+    let in_file = Path::new(&shown);
+    match (signature.content.kind, location.local()) {
+        (SignedKind::Plugin | SignedKind::Device, Some(file)) => plugin_content(file, signature),
+        (SignedKind::Plugin | SignedKind::Device, None) => {
+            Err(Failure::usage(format!("{shown}: download a plugin before you verify it")))
+        }
+        (_, Some(file)) => content_of(file),
+        (SignedKind::Library, None) => {
+            let library = Library::open_located(storage, location).map_err(for_file(in_file))?;
+            Ok(SignedContent::library(library.index()))
+        }
+        (SignedKind::Asset, None) => {
+            let bytes = storage.read(location, Limits::default().file_bytes)?;
+            SignedContent::asset(&bytes).map_err(for_file(in_file))
+        }
+    }
+}
+
+impl Display for Verified {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let file = plain(&self.file);
+        let Some(signer) = &self.signer else {
+            return writeln!(f, "{file}: not signed: there is no {file}.{SIGNATURE_EXTENSION}");
+        };
+        write!(f, "{file}: {}", plain(&signer.to_string()))?;
+        if let (Some(kind), Some(name), true) =
+            (self.kind, &self.name, signer.public_key().is_some())
+        {
+            write!(f, " ({kind} {}", plain(name))?;
+            if let Some(version) = &self.version {
+                write!(f, " {}", plain(version))?;
+            }
+            write!(f, ")")?;
+        }
+        if !self.verified && signer.is_trusted() {
+            write!(f, "; another key was asked for")?;
+        }
+        writeln!(f)
+    }
+}

@@ -1,0 +1,60 @@
+//! Devices that are known by their descriptor alone, without their code.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use htex_base::native::description::read_descriptor;
+
+use crate::registry::{AdapterEntry, Origin};
+use crate::{
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Input, LibraryFault, Output,
+    Settings, StreamFormat,
+};
+
+/// Returns the device of a library by the descriptor beside it; `None` if there is none.
+pub(crate) fn adapter(library: &Path) -> Result<Option<AdapterEntry>, DeviceError> {
+    let name = library.display().to_string();
+    let failed = |what: String| DeviceError::File { path: name.clone(), what };
+    let json = read_descriptor(library).map_err(|error| failed(error.to_string()))?;
+    let Some(json) = json else { return Ok(None) };
+    let descriptor: Descriptor =
+        serde_json::from_str(&json).map_err(|error| failed(error.to_string()))?;
+    descriptor.check()?;
+    let adapter = Arc::new(Described { descriptor, library: name });
+    Ok(Some(AdapterEntry { adapter, origin: Origin::Library(library.to_owned()) }))
+}
+
+/// An adapter that cannot be opened.
+struct Described {
+    descriptor: Descriptor,
+    library: String,
+}
+
+impl Described {
+    fn refuse(&self) -> DeviceError {
+        let what = "only its descriptor was read".to_owned();
+        DeviceError::Library { library: self.library.clone(), fault: LibraryFault::Load, what }
+    }
+}
+
+impl Adapter for Described {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        Ok(Vec::new())
+    }
+
+    fn capabilities(&self, _: &Settings) -> Result<Capabilities, DeviceError> {
+        Err(self.refuse())
+    }
+
+    fn open_output(&self, _: &Settings, _: &StreamFormat) -> Result<Box<dyn Output>, DeviceError> {
+        Err(self.refuse())
+    }
+
+    fn open_input(&self, _: &Settings) -> Result<Box<dyn Input>, DeviceError> {
+        Err(self.refuse())
+    }
+}

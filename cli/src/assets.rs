@@ -19,6 +19,7 @@ use serde_json::{Map, Value};
 use crate::columns::{Column, Errors, cells, columns, headings};
 use crate::failure::Result;
 use crate::grid::grid_text;
+use crate::keys::Signer;
 use crate::output::{show, warn, write_file};
 
 /// The summary of an asset, which commands print when they make or show an asset: its manifest, and
@@ -41,6 +42,9 @@ pub(crate) struct AssetSummary {
     /// Warnings that the manifest does not contain.
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
+    /// Who signed the file; left out if there is no signature beside it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) signer: Option<Signer>,
     /// Whether the text leaves out the manifest's warnings, because they were already printed.
     #[serde(skip)]
     pub(crate) is_warned: bool,
@@ -98,6 +102,7 @@ impl AssetSummary {
             grid: None,
             warnings: Vec::new(),
             notes: asset.notes.iter().map(|note| note.message.clone()).collect(),
+            signer: None,
             is_warned: false,
         }
     }
@@ -192,6 +197,9 @@ impl AssetSummary {
             if let Some(text) = text {
                 writeln!(f, "{name}: {}", plain(text))?;
             }
+        }
+        if let Some(signer) = &self.signer {
+            writeln!(f, "{}", plain(&signer.to_string()))?;
         }
         writeln!(f, "contact: {}", contact.name())?;
         writeln!(f, "law outside the recorded motions: {}", self.law)?;

@@ -13,7 +13,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ("Inspect", &["info", "spectrum", "compare", "validate", "explain", "formats"]),
     ("Play", &["synth", "play", "render", "plan", "gain", "export", "bake"]),
     ("Libraries", &["build", "lib"]),
-    ("Plugins and devices", &["plugin", "device", "conformance"]),
+    ("Plugins and devices", &["plugin", "device", "registry", "conformance"]),
     ("Signatures", &["key", "sign", "verify"]),
     ("Laboratory", &["record", "response", "study", "studio"]),
     ("Tools", &["completions", "man", "schema"]),

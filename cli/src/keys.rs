@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, OwnFolder, private, random_key, read_regular};
 use htex_base::native::folders;
+use htex_base::storage::{Location, Storage};
 use htex_format::signing::{
     FileSignature, PublicKey, SIGNATURE_EXTENSION, SecretKey, SignedContent, SignedKind,
     TrustedKey, TrustedKeys,
@@ -194,16 +195,7 @@ impl Signer {
         file: &Path,
         content: impl FnOnce(&FileSignature) -> Result<SignedContent>,
     ) -> Result<Option<Self>> {
-        let path = signature_path(file);
-        let bytes = match read_regular(&path, MOST_BYTES) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            read => read.reading(&path)?,
-        };
-        let signature = match FileSignature::from_json(&bytes) {
-            Ok(signature) => signature,
-            Err(error) => return Ok(Some(Self::Invalid { problem: error.to_string() })),
-        };
-        Self::of(&KeyRing::new()?, &bytes, &content(&signature)?).map(Some)
+        signer_at(&Location::parse(file.as_os_str())?, content)
     }
 
     /// Returns who signed a plugin or a device, without loading it. Name and version are those
@@ -239,6 +231,25 @@ impl Display for Signer {
             Self::Invalid { problem } => write!(f, "not signed: {problem}"),
         }
     }
+}
+
+/// Returns who signed a file at a path or a URI; `None` if there is no `.sig` file beside it.
+/// `content` is called only if there is one.
+pub(crate) fn signer_at(
+    file: &Location,
+    content: impl FnOnce(&FileSignature) -> Result<SignedContent>,
+) -> Result<Option<Signer>> {
+    let beside = Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?;
+    let storage = Storage::from_environment()?;
+    if !storage.exists(&beside)? {
+        return Ok(None);
+    }
+    let bytes = storage.read(&beside, MOST_BYTES)?;
+    let signature = match FileSignature::from_json(&bytes) {
+        Ok(signature) => signature,
+        Err(error) => return Ok(Some(Signer::Invalid { problem: error.to_string() })),
+    };
+    Signer::of(&KeyRing::new()?, &bytes, &content(&signature)?).map(Some)
 }
 
 /// Returns what a plugin's signature should be of: its own statements, and the hash of the file.

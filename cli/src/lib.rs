@@ -18,6 +18,8 @@ mod grid;
 mod groups;
 #[cfg(feature = "lab")]
 mod inputs;
+#[cfg(feature = "build")]
+mod installed;
 mod invocation;
 mod keys;
 mod located;
@@ -25,6 +27,8 @@ mod motions;
 mod output;
 mod outputs;
 mod playing;
+#[cfg(feature = "build")]
+mod plugin_registry;
 mod plugins;
 mod progress;
 mod recording_plot;

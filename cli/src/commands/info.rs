@@ -4,8 +4,10 @@ use clap::Args;
 use htex_host::Registry;
 
 use crate::assets::AssetSummary;
+use crate::commands::sign::content_of;
 use crate::commands::validate::refuse_library;
 use crate::failure::{Exit, Result, for_file};
+use crate::keys::Signer;
 use crate::located;
 use crate::output::{print, print_json, show};
 
@@ -52,6 +54,7 @@ fn summary(file: &Path) -> Result<AssetSummary> {
     let asset = htex_format::Asset::open(file).map_err(for_file(file))?;
     let bytes = std::fs::metadata(file).map_or(0, |m| m.len());
     let mut summary = AssetSummary::new(file, bytes, &asset);
+    summary.signer = Signer::of_file(file, |_| content_of(file))?;
     let models = Registry::builtin();
     let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
     let representations = asset.manifest.representations.iter();

@@ -30,6 +30,8 @@ mod plugin;
 mod process;
 #[cfg(feature = "lab")]
 mod record;
+#[cfg(feature = "build")]
+mod registry;
 mod render;
 #[cfg(feature = "lab")]
 mod response;
@@ -107,6 +109,7 @@ subcommands! {
         Sign(sign::Sign),
         Verify(verify::Verify),
         Plugin(plugin::Plugin),
+        Registry(registry::Registry) if feature = "build",
         Device(device::Device),
     }
 }

@@ -29,6 +29,9 @@ enum What {
     /// JSON Schema of `build-report.json`, which `htex build` writes
     #[cfg(feature = "build")]
     BuildReport,
+    /// JSON Schema of an entry in a registry of plugins (`htex registry`)
+    #[cfg(feature = "build")]
+    RegistryEntry,
     /// JSON Schema of studies (`htex study`)
     #[cfg(feature = "lab")]
     Study,
@@ -54,6 +57,8 @@ impl Schema {
             What::Recipe => Ok(htex_build::recipe_schema()),
             #[cfg(feature = "build")]
             What::BuildReport => Ok(htex_build::report_schema()),
+            #[cfg(feature = "build")]
+            What::RegistryEntry => Ok(htex_build::registry::entry_schema()),
             #[cfg(feature = "lab")]
             What::Study => Ok(htex_lab::study::study_schema()),
             #[cfg(feature = "lab")]

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::sign::content_of;
 use crate::failure::{Exit, Failure, Result, for_file};
-use crate::keys::{KeyRing, Signer, plugin_content};
+use crate::keys::{KeyRing, Signer, plugin_content, signer_at};
 use crate::output::{print, print_json};
 
 /// Check who signed assets, libraries and plugins
@@ -59,7 +59,7 @@ impl Verify {
         let ring = KeyRing::new()?;
         let wanted = self.signed_by.as_deref().map(|name| ring.signer(name)).transpose()?;
         let verified: Result<Vec<Verified>> =
-            self.files.iter().map(|file| verify(&ring, file, wanted)).collect();
+            self.files.iter().map(|file| verify(file, wanted)).collect();
         let verified = verified?;
         if self.json {
             print_json(&verified)?;
@@ -70,13 +70,12 @@ impl Verify {
     }
 }
 
-fn verify(ring: &KeyRing, argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
+fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
     let (text, texture) = match split_address(argument) {
         Some((library, texture)) => (library, Some(texture)),
         None => (argument, None),
     };
     let location = Location::parse(OsStr::new(text))?;
-    let beside = Location::parse(OsStr::new(&format!("{text}.{SIGNATURE_EXTENSION}")))?;
     let storage = Storage::from_environment()?;
     if !storage.exists(&location)? {
         return Err(Failure::Other(format!("{}: there is no such file", plain(text))));
@@ -89,19 +88,15 @@ fn verify(ring: &KeyRing, argument: &str, wanted: Option<PublicKey>) -> Result<V
         version: None,
         signer: None,
     };
-    if !storage.exists(&beside)? {
+    let signer = signer_at(&location, |signature| {
+        let content = content(&storage, &location, signature)?;
+        found.kind = Some(content.kind);
+        found.name = Some(content.name.clone());
+        found.version = Some(content.version.clone()).filter(|version| !version.is_empty());
+        Ok(content)
+    })?;
+    let Some(signer) = signer else {
         return Ok(found);
-    }
-    let bytes = storage.read(&beside, MOST_SIGNATURE_BYTES)?;
-    let signer = match FileSignature::from_json(&bytes) {
-        Err(error) => Signer::Invalid { problem: error.to_string() },
-        Ok(signature) => {
-            let content = content(&storage, &location, &signature)?;
-            found.kind = Some(content.kind);
-            found.name = Some(content.name.clone());
-            found.version = Some(content.version.clone()).filter(|version| !version.is_empty());
-            Signer::of(ring, &bytes, &content)?
-        }
     };
     found.verified = match wanted {
         Some(key) => signer.public_key() == Some(key) && !matches!(signer, Signer::Revoked { .. }),
@@ -117,9 +112,6 @@ fn verify(ring: &KeyRing, argument: &str, wanted: Option<PublicKey>) -> Result<V
     found.signer = Some(signer);
     Ok(found)
 }
-
-/// Larger than any signature; the reader of signatures refuses what is too large.
-const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
 
 /// Returns what the signature of a file should be of.
 fn content(

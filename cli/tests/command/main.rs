@@ -26,6 +26,7 @@ mod flags;
 mod fluctuation;
 mod gain;
 mod grid;
+mod installing;
 mod lab;
 mod library;
 mod library_builds;

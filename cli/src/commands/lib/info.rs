@@ -4,12 +4,14 @@ use std::fmt::{Display, Formatter};
 use clap::Args;
 use htex_base::finding::plain;
 use htex_format::library::LibrarySummary;
+use htex_format::signing::SignedContent;
 use serde::Serialize;
 
 use super::LibraryArg;
 use super::listing::range;
 use crate::assets::short_name;
 use crate::failure::{Result, for_file};
+use crate::keys::{Signer, signer_at};
 use crate::output::show;
 
 /// Show what a library says about itself, and summarize its textures
@@ -32,14 +34,20 @@ struct LibraryInfo {
     file: String,
     #[serde(flatten)]
     summary: LibrarySummary,
+    /// Who signed the library; left out if there is no signature beside it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signer: Option<Signer>,
 }
 
 impl Info {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
         let _waiting = self.library.waiting()?;
-        let summary = self.library.open()?.summary().map_err(for_file(&file))?;
-        show(&LibraryInfo { file: file.display().to_string(), summary }, self.json)
+        let library = self.library.open()?;
+        let content = SignedContent::library(library.index());
+        let signer = signer_at(&self.library.0, |_| Ok(content))?;
+        let summary = library.summary().map_err(for_file(&file))?;
+        show(&LibraryInfo { file: file.display().to_string(), summary, signer }, self.json)
     }
 }
 
@@ -66,6 +74,7 @@ impl Display for LibraryInfo {
             "" => Ok(()),
             text => writeln!(f, "{name:12} {}", plain(text)),
         };
+        line("signature", &self.signer.as_ref().map(ToString::to_string).unwrap_or_default())?;
         line("authors", &metadata.authors.join(", "))?;
         line("homepage", metadata.homepage.as_deref().unwrap_or_default())?;
         line("source", metadata.source.as_deref().unwrap_or_default())?;

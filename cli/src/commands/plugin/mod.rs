@@ -4,15 +4,20 @@ mod bench;
 mod check;
 mod export;
 mod info;
+#[cfg(feature = "build")]
+mod install;
 mod list;
 mod new;
 
 use clap::Args;
 
+#[cfg(feature = "build")]
+pub(in crate::commands) use install::first_bad;
+
 use super::subcommands;
 use crate::failure::Result;
 
-/// Inspect, check and time texture models
+/// Find, write, check, install and time plugins
 #[derive(Args)]
 pub(crate) struct Plugin {
     #[command(subcommand)]
@@ -24,6 +29,9 @@ subcommands! {
         List(list::List),
         Info(info::Info),
         Check(check::Check),
+        Install(install::Install) if feature = "build",
+        Remove(install::Remove) if feature = "build",
+        Update(install::Update) if feature = "build",
         Export(export::Export),
         New(new::New),
         Bench(bench::Bench),

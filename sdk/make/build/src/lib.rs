@@ -61,6 +61,7 @@ mod plan;
 mod publish;
 mod reasons;
 mod recipe;
+pub mod registry;
 mod remote;
 mod removed;
 mod report;

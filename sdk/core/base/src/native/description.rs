@@ -1,7 +1,8 @@
 //! Descriptors of plugins that can be read without running the plugin.
 //!
-//! A WASM module carries its descriptor in a custom section, [`SECTION`]. Beside a native library
-//! there is a file with the descriptor and the hash of the library.
+//! A WASM module carries its descriptor in a custom section, [`SECTION`]. Beside a native library,
+//! and beside a module without the section, there is a file with the descriptor and the hash of the
+//! plugin.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -20,30 +21,30 @@ const MOST_DESCRIPTION_BYTES: u64 = 1 << 21;
 /// The first eight bytes of a module of the binary format 1.
 const MODULE_START: &[u8] = b"\0asm\x01\0\0\0";
 
-/// A native library's description: the content of `LIBRARY.descriptor.json`.
+/// The content of `PLUGIN.descriptor.json`.
 #[derive(Serialize, Deserialize)]
 struct Description {
     htex_descriptor: String,
-    /// BLAKE3 of the library, in hexadecimal digits.
+    /// BLAKE3 of the plugin, in hexadecimal digits.
     blake3: String,
     descriptor: Value,
 }
 
-/// Returns the path of a native library's description.
-pub fn description_path(library: &Path) -> PathBuf {
-    let mut path = library.as_os_str().to_owned();
+/// Returns the path of the description beside a plugin.
+pub fn description_path(plugin: &Path) -> PathBuf {
+    let mut path = plugin.as_os_str().to_owned();
     path.push(".descriptor.json");
     path.into()
 }
 
-/// Returns the description of a native library with these bytes.
+/// Returns the description of a plugin with these bytes.
 ///
 /// # Errors
 /// If the descriptor is not JSON.
-pub fn description(library: &[u8], descriptor: &str) -> Result<String, serde_json::Error> {
+pub fn description(plugin: &[u8], descriptor: &str) -> Result<String, serde_json::Error> {
     let description = Description {
         htex_descriptor: "1.0".to_owned(),
-        blake3: blake3::hash(library).to_hex().to_string(),
+        blake3: blake3::hash(plugin).to_hex().to_string(),
         descriptor: serde_json::from_str(descriptor)?,
     };
     Ok(serde_json::to_string_pretty(&description)? + "\n")
@@ -56,9 +57,8 @@ pub fn description(library: &[u8], descriptor: &str) -> Result<String, serde_jso
 /// Errors of the system.
 pub fn read_descriptor(plugin: &Path) -> io::Result<Option<String>> {
     let bytes = read_regular(plugin, MOST_BYTES)?;
-    if bytes.starts_with(b"\0asm") {
-        let section = section(&bytes).map(|section| String::from_utf8_lossy(section).into_owned());
-        return Ok(section);
+    if let Some(section) = section(&bytes) {
+        return Ok(Some(String::from_utf8_lossy(section).into_owned()));
     }
     let description = match read_regular(&description_path(plugin), MOST_DESCRIPTION_BYTES) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),

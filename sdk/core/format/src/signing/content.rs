@@ -158,11 +158,13 @@ impl FileSignature {
     /// If the signature is of another content, or is invalid.
     pub fn check(&self, content: &SignedContent) -> Result<PublicKey, SignatureError> {
         let told = &self.content;
+        if told.blake3 != content.blake3 {
+            return Err(SignatureError::Changed);
+        }
         let parts = [
             ("kind", told.kind.name(), content.kind.name()),
             ("name", &told.name, &content.name),
             ("version", &told.version, &content.version),
-            ("contents", &told.blake3, &content.blake3),
         ];
         if let Some((part, signed, found)) = parts.into_iter().find(|(_, a, b)| a != b) {
             let (signed, found) = (signed.to_owned(), found.to_owned());
@@ -184,10 +186,10 @@ pub enum SignatureError {
     Malformed(String),
     #[error("the signature has version {0}, and this program reads version 1; update the program")]
     Newer(String),
-    /// It is a signature of something else.
-    #[error(
-        "the signature is for another {part}: `{signed}`, and this file has `{found}`; it was changed after it was signed, or this is another file's signature"
-    )]
+    /// The hash is another.
+    #[error("the file was changed after it was signed, or this is another file's signature")]
+    Changed,
+    #[error("the signature is for the {part} `{signed}`, and the file has `{found}`")]
     Other { part: &'static str, signed: String, found: String },
     #[error("the signature is not one that its key made; do not trust this file")]
     Invalid,

@@ -34,7 +34,7 @@ pub use chain::{Chain, ChainStage};
 pub(crate) use color::RECORDING_COLOR;
 pub use color::{model_color, series_color};
 pub use number::fixed;
-pub use page::{Page, code_block, details, figures, list, paragraph};
+pub use page::{Page, code_block, details, figures, link, list, paragraph, preview};
 pub use plot::Plot;
 pub use series::{Line, Series};
 pub use stack::stacked;

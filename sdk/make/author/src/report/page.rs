@@ -64,6 +64,26 @@ pub fn code_block(text: &str) -> String {
     Element::new("pre").child(&code).render()
 }
 
+/// Returns a link to an `https://` address, or the text if it is none.
+pub fn link(address: &str) -> String {
+    if !address.starts_with("https://") {
+        return paragraph(address);
+    }
+    let link = Element::new("a").set("href", address).text(address);
+    Element::new("p").child(&link).render()
+}
+
+/// Returns a player of a sound, or a picture, in a file beside the page.
+pub fn preview(path: &str) -> String {
+    let is_sound = [".wav", ".flac", ".mp3", ".ogg"].iter().any(|end| path.ends_with(end));
+    if is_sound {
+        let player = Element::new("audio").set("controls", "").set("preload", "none");
+        player.set("src", path).render()
+    } else {
+        Element::new("img").set("alt", "").set("src", path).render()
+    }
+}
+
 /// Places SVG pictures side by side, or below one another if the page is narrow.
 pub fn figures(pictures: &[String]) -> String {
     let one = |svg: &String| Element::new("figure").set("class", "wide").raw(svg);

@@ -26,6 +26,7 @@ mod outputs;
 mod playing;
 mod plugins;
 mod progress;
+mod project;
 mod recording_plot;
 mod recordings;
 mod report;

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use builds::*;
+use htex_check::templates;
 use htex_host::{
     Band, Fit, FitCondition, FitInput, HostError, LoadedModel, Motion, Status, Stream,
 };
@@ -31,17 +32,9 @@ fn the_example_in_c() {
 
 #[test]
 fn the_template_in_c() {
-    let project = folder("template-c");
-    for file in ["model.c", "resonance.h", "build.sh"] {
-        let text = fs::read_to_string(templates().join("c").join(file)).unwrap();
-        fs::write(project.join(file), filled_in(&text)).unwrap();
-    }
-    for header in ["htex_model.h", "htex_model_parts.h", "htex_model_wasm.h", "htex_motion_1.h"] {
-        let from = workspace().join("spec/include").join(header);
-        fs::copy(from, project.join(header)).unwrap();
-    }
+    let project = written(&templates::MODEL_C, "template-c");
     let model = load(&build_c(&project, "native"));
-    assert_eq!(model.id(), "com.example.trial");
+    assert_eq!(model.id(), "org.example.trial");
     holds(&model, 0.03);
     if has_clang() {
         is_the_same(&model, &load(&build_c(&project, "wasm")));
@@ -115,20 +108,11 @@ fn the_example_in_rust() {
 
 #[test]
 fn the_template_in_rust() {
-    let project = folder("template-rust");
-    fs::create_dir_all(project.join("src")).unwrap();
-    for (from, to) in [
-        ("Cargo.toml.in", "Cargo.toml"),
-        ("src/lib.rs", "src/lib.rs"),
-        ("src/follow.rs", "src/follow.rs"),
-    ] {
-        let text = fs::read_to_string(templates().join("rust").join(from)).unwrap();
-        fs::write(project.join(to), filled_in(&text)).unwrap();
-    }
+    let project = written(&templates::MODEL_RUST, "template-rust");
     // Uses the versions in the lock file.
     fs::copy(workspace().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
     let model = load(&build_rust(&project, None));
-    assert_eq!(model.id(), "com.example.trial");
+    assert_eq!(model.id(), "org.example.trial");
     holds(&model, 0.02);
     if has_wasm_target() {
         let module = build_rust(&project, Some(WASM));
@@ -344,15 +328,14 @@ fn status(error: &HostError) -> Status {
     }
 }
 
-fn templates() -> PathBuf {
-    workspace().join("sdk/check/templates")
-}
-
-fn filled_in(text: &str) -> String {
-    let sdk = workspace().join("sdk").canonicalize().unwrap();
-    text.replace("{{NAME}}", "trial")
-        .replace("{{ID}}", "com.example.trial")
-        .replace("{{LABEL}}", "Trial")
-        .replace("{{TYPE}}", "Trial")
-        .replace("{{SDK_PATH}}", sdk.to_str().unwrap())
+/// Writes the project of a template to a folder that stays between runs.
+fn written(template: &templates::Template, name: &str) -> PathBuf {
+    let project = folder(name);
+    let sources = workspace().canonicalize().unwrap();
+    for (file, text) in template.files("trial", Some(sources.to_str().unwrap())) {
+        let file = project.join(file);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(file, text).unwrap();
+    }
+    project
 }

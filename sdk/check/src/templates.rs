@@ -25,6 +25,7 @@ pub const MODEL_RUST: Template = Template {
     files: &[
         ("README.md", include_str!("../templates/model-rust/README.md.in")),
         ("Cargo.toml", include_str!("../templates/model-rust/Cargo.toml.in")),
+        (".cargo/config.toml", include_str!("../templates/model-rust/config.toml.in")),
         ("src/lib.rs", include_str!("../templates/model-rust/src/lib.rs")),
         ("src/follow.rs", include_str!("../templates/model-rust/src/follow.rs")),
     ],
@@ -33,8 +34,8 @@ pub const MODEL_RUST: Template = Template {
         CARGO_BUILD,
         "htex plugin check target/release/lib{{CRATE}}.so --fuzz 60",
         "rustup target add wasm32-unknown-unknown",
-        "cargo build --release --target wasm32-unknown-unknown",
-        "htex plugin check target/wasm32-unknown-unknown/release/{{CRATE}}.wasm \
+        "cargo module",
+        "htex plugin check target/wasm32-unknown-unknown/module/{{CRATE}}.wasm \
          --against target/release/lib{{CRATE}}.so",
     ],
     crates: &[("htex-dsp", "sdk/core/dsp"), ("htex-model", "sdk/core/model")],

@@ -15,8 +15,9 @@ use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 use xtask::needs;
 
-/// Largest deflated size of the template's module, built without flags, bytes.
-const TEMPLATE_BYTES: usize = 42_000;
+/// Largest deflated size of the template's module, bytes: the measured size plus a few percent for
+/// other compilers.
+const TEMPLATE_BYTES: usize = 23_500;
 
 #[test]
 fn the_example_in_c() {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The command and the language of each template.
-const TEMPLATES: [[&str; 2]; 4] =
-    [["plugin", "c"], ["plugin", "rust"], ["device", "c"], ["device", "rust"]];
+const TEMPLATES: [[&str; 2]; 5] =
+    [["plugin", "c"], ["plugin", "rust"], ["plugin", "zig"], ["device", "c"], ["device", "rust"]];
 
 fn htex(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_htex"));
@@ -59,7 +59,10 @@ fn passes_its_own_steps(template: [&str; 2], has_wasm: bool) {
             .replace("--fuzz 60", "--fuzz 1");
         let mut command = Command::new("sh");
         command.args(["-c", &step]).current_dir(&dir).env("PATH", path.as_ref().unwrap());
-        let run = command.env("CARGO_TARGET_DIR", &target).output().unwrap();
+        command
+            .env("CARGO_TARGET_DIR", &target)
+            .env("ZIG", xtask::needs::zig().unwrap_or_default());
+        let run = command.output().unwrap();
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         println!("{step}\n{}", text(&run.stdout));
         assert!(run.status.success(), "{step}: {}", text(&run.stderr));
@@ -98,6 +101,13 @@ fn a_new_model_in_c() {
 fn a_new_model_in_rust() {
     let has_wasm = xtask::needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed());
     passes_its_own_steps(["plugin", "rust"], has_wasm);
+}
+
+#[test]
+fn a_new_model_in_zig() {
+    if xtask::needs::ZIG.met(xtask::needs::zig().is_some()) {
+        passes_its_own_steps(["plugin", "zig"], true);
+    }
 }
 
 #[test]

@@ -64,6 +64,28 @@ pub const MODEL_C: Template = Template {
     crates: &[],
 };
 
+/// A model in Zig.
+pub const MODEL_ZIG: Template = Template {
+    files: &[
+        ("README.md", include_str!("../templates/model-zig/README.md.in")),
+        ("model.zig", include_str!("../templates/model-zig/model.zig")),
+        ("resonance.zig", include_str!("../templates/model-zig/resonance.zig")),
+        ("parts.zig", include_str!("../templates/model-zig/parts.zig")),
+        ("build.sh", include_str!("../templates/model-zig/build.sh")),
+        ("htex_model.h", include_str!("../templates/include/htex_model.h")),
+    ],
+    build: SCRIPT,
+    steps: &[
+        "python3 -m venv .zig && .zig/bin/pip install ziglang==0.15.1 \
+         && echo \"ZIG=$PWD/.zig/bin/python -m ziglang\" >> \"$GITHUB_ENV\"",
+        SCRIPT,
+        "htex plugin check {{NAME}}.so --fuzz 60",
+        "sh build.sh wasm",
+        "htex plugin check {{NAME}}.wasm --against {{NAME}}.so",
+    ],
+    crates: &[],
+};
+
 /// A device in Rust.
 pub const DEVICE_RUST: Template = Template {
     files: &[

@@ -54,6 +54,21 @@ fn the_template_in_c() {
     }
 }
 
+/// The templates in C and in Zig are the same model, with the same samples.
+#[test]
+fn the_template_in_zig() {
+    if !needs::ZIG.met(needs::zig().is_some()) {
+        return;
+    }
+    let model = load(&build_c(&written(&templates::MODEL_ZIG, "template-zig"), "native"));
+    let in_c = load(&build_c(&written(&templates::MODEL_C, "template-c-zig"), "native"));
+    is_the_same(&in_c, &model);
+    let module = build_c(&folder("template-zig"), "wasm");
+    is_the_same(&in_c, &load(&module));
+    let bytes = deflated_bytes(&fs::read(&module).unwrap());
+    println!("{:20} {bytes} bytes deflated, in Zig", model.id());
+}
+
 /// A model or a device may be written in C++: every header compiles without warnings, and the test
 /// uses its functions.
 #[test]
@@ -288,7 +303,7 @@ fn the_pitch_is_found(model: &LoadedModel) {
     assert!((found[1] / found[0] - 65.0).abs() < 0.1);
 }
 
-/// A WASM module fits and plays bit for bit like the library from the same source.
+/// A WASM module, or a library from another language, fits and plays bit for bit like the library.
 fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
     for (name, magnitude) in spectra() {
         let [a, b] = [native, wasm].map(|model| fit(model, &magnitude, &[]).unwrap());
@@ -297,7 +312,7 @@ fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
         assert_eq!(x, y, "{} {name}", native.id());
     }
     edges_are_answered(wasm);
-    println!("{:20} the same as a WASM module", native.id());
+    println!("{:20} the same samples", native.id());
 }
 
 // ---- ways and means ----

@@ -20,6 +20,7 @@ pub(crate) struct New {
 enum Lang {
     Rust,
     C,
+    Zig,
 }
 
 impl New {
@@ -27,6 +28,7 @@ impl New {
         self.project.write(match self.lang {
             Lang::Rust => &templates::MODEL_RUST,
             Lang::C => &templates::MODEL_C,
+            Lang::Zig => &templates::MODEL_ZIG,
         })
     }
 }

@@ -27,9 +27,11 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs a C project's `build.sh` and returns what it built.
+/// Runs the `build.sh` of a project in C or Zig and returns what it built.
 pub fn build_c(project: &Path, kind: &str) -> PathBuf {
-    let built = run(Command::new("sh").arg(project.join("build.sh")).arg(kind));
+    let mut build = Command::new("sh");
+    build.arg(project.join("build.sh")).arg(kind);
+    let built = run(build.env("ZIG", needs::zig().unwrap_or_default()));
     project.join(built.trim())
 }
 

@@ -26,9 +26,8 @@ fn kept(name: &str) -> PathBuf {
 /// The text of all files in a folder and the folders in it.
 fn all_text(folder: &Path) -> String {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let text = |path: PathBuf| match path.is_dir() {
-        true => all_text(&path),
-        false => std::fs::read_to_string(path).unwrap(),
+    let text = |path: PathBuf| {
+        if path.is_dir() { all_text(&path) } else { std::fs::read_to_string(path).unwrap() }
     };
     entries.map(text).collect()
 }

@@ -184,3 +184,28 @@ fn capital(word: &str) -> String {
     let (first, rest) = word.split_at(word.len().min(1));
     first.to_uppercase() + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without the sources, a project depends only on versions. With them, it takes every crate of
+    /// htex that it depends on from the sources.
+    #[test]
+    fn crates_come_from_the_registry_or_from_the_sources() {
+        for template in [&MODEL_RUST, &DEVICE_RUST] {
+            let manifest = |sources: Option<&str>| {
+                let files = template.files("my-own", sources);
+                files.into_iter().find(|(file, _)| *file == "Cargo.toml").map(|(_, text)| text)
+            };
+            let published = manifest(None).unwrap_or_default();
+            assert!(!published.contains("path") && !published.contains("[patch"), "{published}");
+            let patched = manifest(Some("a \"b\" \\c")).unwrap_or_default();
+            for (name, path) in template.crates() {
+                assert!(published.contains(&format!("\n{name} = ")), "{published}");
+                let line = format!("\n{name} = {{ path = \"a \\\"b\\\" \\\\c/{path}\" }}\n");
+                assert!(patched.contains(&line), "{patched}");
+            }
+        }
+    }
+}

@@ -31,6 +31,7 @@ mod playing;
 mod plugin_registry;
 mod plugins;
 mod progress;
+mod project;
 mod recording_plot;
 mod recordings;
 mod report;

@@ -7,11 +7,11 @@ cd "$(dirname "$0")"
 flags="-std=c11 -O2 -Wall -Wextra -ffp-contract=off -fno-math-errno -fvisibility=hidden"
 case "${1:-native}" in
 wasm)
-    clang --target=wasm32 $flags -I ../../spec/include -I ../../sdk/check/templates/c -ffreestanding -nostdlib -Wl,--no-entry -o bursts.wasm bursts.c
+    clang --target=wasm32 $flags -I ../../spec/include -I ../../sdk/check/templates/model-c -ffreestanding -nostdlib -Wl,--no-entry -o bursts.wasm bursts.c
     echo "bursts.wasm" ;;
 native)
     case "$(uname -s)" in Darwin) suffix=dylib ;; *) suffix=so ;; esac
-    ${CC:-cc} $flags -I ../../spec/include -I ../../sdk/check/templates/c -shared -fPIC -o "bursts.$suffix" bursts.c
+    ${CC:-cc} $flags -I ../../spec/include -I ../../sdk/check/templates/model-c -shared -fPIC -o "bursts.$suffix" bursts.c
     echo "bursts.$suffix" ;;
 *)
     echo "usage: ./build.sh [native|wasm]" >&2

@@ -18,7 +18,7 @@ pub fn build(source: &str, module: &Path) -> Result<()> {
     // Without `errno`, `sqrt` becomes an instruction. There is no C library to call.
     clang.args(["--target=wasm32", "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno"]);
     clang.args(["-fvisibility=hidden", "-ffreestanding", "-nostdlib", "-Wl,--no-entry"]);
-    for include in ["spec/include", "sdk/check/templates/c", "examples/model-c-bursts"] {
+    for include in ["spec/include", "sdk/check/templates/model-c", "examples/model-c-bursts"] {
         clang.arg("-I").arg(workspace().join(include));
     }
     clang.arg("-o").arg(module).arg(workspace().join(source));

@@ -29,6 +29,13 @@ pub const WASM_CLANG: Need = Need {
     for_wasm: true,
 };
 
+/// A compiler of Zig ([`zig`]).
+pub const ZIG: Need = Need {
+    what: "a compiler of Zig",
+    how: "python3 -m venv target/zig && target/zig/bin/pip install ziglang==0.15.1",
+    for_wasm: false,
+};
+
 /// A compiler of C.
 pub const CC: Need = Need { what: "a C compiler", how: "apt-get install gcc", for_wasm: false };
 
@@ -137,6 +144,20 @@ pub const KAITAI: Need = Need {
     how: "npm install --prefix target/node kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 yaml@2",
     for_wasm: false,
 };
+
+/// Returns the command that runs the compiler of Zig, if there is one: the value of `HTEX_ZIG`, the
+/// package `ziglang` in `target/zig`, or `zig`.
+pub fn zig() -> Option<String> {
+    let given = std::env::var("HTEX_ZIG").ok().filter(|command| !command.is_empty());
+    given.or_else(|| {
+        let python = crate::places::target().join("zig/bin/python");
+        if python.exists() {
+            return Some(format!("{} -m ziglang", std::path::absolute(python).ok()?.display()));
+        }
+        let runs = std::process::Command::new("zig").arg("version").output().is_ok();
+        runs.then(|| "zig".to_owned())
+    })
+}
 
 impl Need {
     /// Returns `there`, which says whether the software is installed. If it is not installed, also

@@ -227,7 +227,7 @@ fn bad_module(folder: &Path, name: &str) -> Option<PathBuf> {
         .arg("-I")
         .arg(workspace().join("spec/include"))
         .arg("-I")
-        .arg(workspace().join("sdk/check/templates/c"))
+        .arg(workspace().join("sdk/check/templates/model-c"))
         .arg(workspace().join("tests/bad-plugins").join(name).with_extension("c"))
         .args(["-o".as_ref(), out.as_os_str()])
         .status();

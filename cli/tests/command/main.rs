@@ -39,7 +39,7 @@ mod metadata;
 #[cfg(target_os = "linux")]
 mod modules;
 #[cfg(unix)]
-mod new_plugin;
+mod new_project;
 mod outputs;
 mod pages;
 mod play;

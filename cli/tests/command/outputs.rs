@@ -153,7 +153,7 @@ fn an_ended_program_leaves_no_part() {
 fn no_output_is_another_place_or_format_than_its_name_says() {
     let place = place();
     let before = entries(&place);
-    let uris: [&[&str]; 9] = [
+    let uris: [&[&str]; 10] = [
         &["lib", "unpack", "a.htexlib", "-o", "s3://bucket/key"],
         &["demo", "s3://bucket/key"],
         &["man", "gs://bucket/key"],
@@ -162,6 +162,7 @@ fn no_output_is_another_place_or_format_than_its_name_says() {
         &["study", "run", "s.toml", "--participant", "P01", "-o", "az://container/answers"],
         &["study", "plan", "https://example.org/study.toml"],
         &["plugin", "new", "felt", "--lang", "rust", "--dir", "s3://bucket/key"],
+        &["device", "new", "felt", "--lang", "c", "--dir", "s3://bucket/key"],
         &["record", "--source", "file:vinyl.csv", "--take", "x", "-o", "ftp://host/d"],
     ];
     for arguments in uris {

@@ -3,34 +3,33 @@
 mod check;
 mod info;
 mod list;
+mod new;
 
-use clap::{Args, Subcommand};
+use clap::Args;
 
-use crate::failure::{Exit, Failure};
+use super::subcommands;
+use crate::failure::Result;
 
-/// List, inspect and check devices
+/// List, inspect, check and create devices
 #[derive(Args)]
 pub(crate) struct Device {
     #[command(subcommand)]
     command: Command,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    List(list::List),
-    Info(info::Info),
-    Check(check::Check),
-    #[command(hide = true)]
-    CheckOne(check::CheckOne),
+subcommands! {
+    Command {
+        List(list::List),
+        Info(info::Info),
+        Check(check::Check),
+        New(new::New),
+        #[command(hide = true)]
+        CheckOne(check::CheckOne),
+    }
 }
 
 impl Device {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self.command {
-            Command::List(args) => args.run(),
-            Command::Info(args) => args.run(),
-            Command::Check(args) => args.run(),
-            Command::CheckOne(args) => args.run(),
-        }
+    pub(crate) fn run(self) -> Result {
+        self.command.run()
     }
 }

@@ -32,7 +32,6 @@ mod signal;
 mod spectra;
 mod start;
 mod table;
-pub mod templates;
 #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
 mod vector;
 

@@ -11,7 +11,13 @@ fn generated_page_is_fresh() {
 
 #[test]
 fn generated_headers_of_the_templates_are_those_of_the_specification() {
-    for header in ["htex_model.h", "htex_model_parts.h", "htex_model_wasm.h", "htex_motion_1.h"] {
+    for header in [
+        "htex_device.h",
+        "htex_model.h",
+        "htex_model_parts.h",
+        "htex_model_wasm.h",
+        "htex_motion_1.h",
+    ] {
         let bytes = std::fs::read(format!("../../spec/include/{header}")).unwrap();
         xtask::generated::file(format!("sdk/check/templates/include/{header}"), &bytes);
     }

@@ -27,30 +27,34 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs a C project's `build.sh` and returns what it built.
+/// Runs the `build.sh` of a project in C or Zig and returns what it built.
 pub fn build_c(project: &Path, kind: &str) -> PathBuf {
-    let built = run(Command::new("sh").arg(project.join("build.sh")).arg(kind));
+    let mut build = Command::new("sh");
+    build.arg(project.join("build.sh")).arg(kind);
+    let built = run(build.env("ZIG", needs::zig().unwrap_or_default()));
     project.join(built.trim())
 }
 
 /// Builds a Rust project, for this machine or another target, and returns its library.
 pub fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
     let folder = folder("third-party-target");
+    let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+    let has_own = target.is_some() && manifest.contains("[profile.module]");
+    let profile = if has_own { "module" } else { "release" };
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     run(Command::new(cargo)
-        .args(["build", "--release", "--quiet", "--manifest-path"])
-        .arg(project.join("Cargo.toml"))
-        .arg("--target-dir")
+        // In the project's folder, so that cargo reads the project's configuration.
+        .current_dir(project)
+        .args(["build", "--quiet", "--profile", profile, "--target-dir"])
         .arg(&folder)
         .args(target.iter().flat_map(|target| ["--target", target])));
-    let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
     let name = manifest.split('"').nth(1).unwrap().replace('-', "_");
     let (prefix, suffix) = match target {
         Some(_) => ("", ".wasm"),
         None => (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX),
     };
     let library = format!("{prefix}{name}{suffix}");
-    folder.join(target.unwrap_or_default()).join("release").join(library)
+    folder.join(target.unwrap_or_default()).join(profile).join(library)
 }
 
 /// Returns what a program prints, or its errors if it fails.

@@ -3,9 +3,8 @@
 //! The model plays noise with the spectrum of a two-pole band-pass filter:
 //! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`.
 //!
-//! `cargo build --release` builds the native library. With `--target wasm32-unknown-unknown` it
-//! builds the WASM module. The module does not link the standard library, so it is small enough to
-//! embed in an asset.
+//! `cargo build --release` builds the native library, and `cargo module` builds the WASM module. The
+//! module does not link the standard library, so it is small enough to embed in an asset.
 #![no_std]
 
 extern crate alloc;
@@ -173,15 +172,15 @@ fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
         pairs.map(|(&f, m)| scale * shape.magnitude_at(f) - m).map(|d| d * d).sum()
     };
     let (low, high) = (libm::log(band.low_hz), libm::log(band.high_hz));
-    let starts = [0.2, 0.4, 0.6, 0.8].map(|part| [low + part * (high - low), libm::log(100.0)]);
-    let found = starts.map(|start| minimize(distance, start, &Options::default()));
-    let [first, others @ ..] = found;
-    let best = |a: [f64; 3], b: [f64; 3]| if b[2] < a[2] { b } else { a };
-    let [x, y, _] = others
-        .iter()
-        .map(|m| [m.x[0], m.x[1], m.value])
-        .fold([first.x[0], first.x[1], first.value], best);
-    shape(&[x, y])
+    let mut best = [low, low, f64::INFINITY];
+    for part in [0.2, 0.4, 0.6, 0.8] {
+        let start = [low + part * (high - low), libm::log(100.0)];
+        let found = minimize(distance, start, &Options::default());
+        if found.value < best[2] {
+            best = [found.x[0], found.x[1], found.value];
+        }
+    }
+    shape(&[best[0], best[1]])
 }
 
 /// Returns the factor with which a shape is closest to a spectrum.

@@ -116,6 +116,16 @@ pub const QEMU_RISCV: Need = Need {
     for_wasm: false,
 };
 
+/// Tells the types of files by their bytes.
+pub const FILE: Need = Need { what: "file", how: "apt-get install file", for_wasm: false };
+
+/// Types of files for desktops.
+pub const MIME: Need = Need {
+    what: "the shared MIME database",
+    how: "apt-get install shared-mime-info",
+    for_wasm: false,
+};
+
 /// An independent reader and player, written in Python, needs these packages.
 pub const PEERS: Need = Need {
     what: "Python with NumPy, SciPy and other packages",

@@ -167,8 +167,8 @@ pub enum LabError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// The columns of input and output cannot be used: both name the same column, or the map of
-    /// further roles contains an axis.
+    /// The input and the output name the same column, or the map that assigns further columns names
+    /// an axis (x, y or z), which a response does not have.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.

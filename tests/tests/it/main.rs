@@ -12,6 +12,7 @@ mod architecture;
 mod bands;
 mod common;
 mod decibel_fits;
+mod desktop;
 mod device_abi;
 mod edges;
 mod fields;

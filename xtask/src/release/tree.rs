@@ -14,10 +14,16 @@ use crate::plugins::models;
 use crate::programs::{output, run};
 
 /// Files of the workspace that every archive contains, and their paths in the archive.
-const FILES: [(&str, &str); 5] = [
+const FILES: [(&str, &str); 11] = [
     ("LICENSE-MIT", "share/doc/htex/LICENSE-MIT"),
     ("LICENSE-APACHE", "share/doc/htex/LICENSE-APACHE"),
     ("CHANGELOG.md", "share/doc/htex/CHANGELOG.md"),
+    ("xtask/src/release/desktop/htex.xml", "share/mime/packages/htex.xml"),
+    ("xtask/src/release/desktop/org.htex.htex.desktop", "share/applications/org.htex.htex.desktop"),
+    ("sdk/bindings/studio/public/icon.svg", "share/icons/hicolor/scalable/apps/org.htex.htex.svg"),
+    ("xtask/src/release/desktop/htex.magic", "share/htex/desktop/htex.magic"),
+    ("xtask/src/release/desktop/htex.reg", "share/htex/desktop/htex.reg"),
+    ("xtask/src/release/desktop/htex-uti.plist", "share/htex/desktop/htex-uti.plist"),
     ("sdk/bindings/studio/shelf/shelf.htexlib", "share/htex/textures.htexlib"),
     ("xtask/src/release/README.md", "README.md"),
 ];

@@ -174,7 +174,7 @@ impl StaticField {
         Self { default: Some(value), ..self }
     }
 
-    /// Sets the range of a slider.
+    /// Sets the usual range of the field: the range of a slider for it.
     pub const fn usual(self, range: UsualRange) -> Self {
         Self { usual: Some(range), ..self }
     }

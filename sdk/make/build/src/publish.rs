@@ -66,7 +66,7 @@ impl Destination {
     /// `work` is `None`, a folder in the user's cache is used.
     ///
     /// # Errors
-    /// If the URI is malformed or read-only. Also if `work` is `None` and the environment names no
+    /// If the URI is malformed or read-only, or if `work` is `None` and the environment names no
     /// folder for caches.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
         let Some(location) = remote_location(Path::new(argument))? else {

@@ -252,6 +252,24 @@ fn invalid_descriptors() {
     }
 }
 
+/// The table in `docs/stability.md` of the versions with which a model may be built.
+#[test]
+fn the_table_of_versions_is_true() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/stability.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let (valid, mut rows) = (text("1.0.0", &[], ""), 0);
+    for row in page.lines().filter_map(|line| line.strip_prefix("| ABI ")) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let (major, minor) = cells[0].split_once('.').unwrap();
+        let [major, minor] = [major, minor].map(|number| number.parse::<u32>().unwrap());
+        let marker = format!("{:#x}", 0x4854_0000 | major << 8 | minor);
+        let loaded = load_within(&valid.replace("0x48540100", &marker), &limits());
+        assert_eq!(loaded.is_ok(), cells[1].starts_with("loads"), "{row}");
+        rows += 1;
+    }
+    assert_eq!(rows, 3);
+}
+
 #[test]
 fn imports_and_invalid_modules() {
     let import = "(module (import \"env\" \"clock\" (func)) (memory (export \"memory\") 1))";

@@ -14,7 +14,7 @@ use crate::output::{print, print_json, show, shown, write_file};
 use crate::plugin_registry::check::{entries, local_files, owners, problems};
 use crate::plugin_registry::page::page;
 
-/// Check a registry of plugins, and make its page
+/// Check a registry of plugins
 ///
 /// A registry is a folder, in a repository or on a web server, from which `htex plugin install ID
 /// --registry DIR` installs plugins. It has a file plugins/ID.toml for each plugin.

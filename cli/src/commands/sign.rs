@@ -15,7 +15,7 @@ use crate::failure::{Failure, Result, for_file};
 use crate::keys::{KeyRing, signature_path};
 use crate::output::{OutputFile, show, shown};
 
-/// Sign assets, libraries and plugins with your key
+/// Sign files with your key
 ///
 /// Writes the signature of FILE to FILE.sig, beside it. The signature states the kind, the name,
 /// the version and the BLAKE3 hash of the file. The signature of a library covers all of its

@@ -17,7 +17,7 @@ use crate::failure::{Exit, Failure, Result, for_file};
 use crate::keys::{KeyRing, Signer, plugin_content, signer_at};
 use crate::output::{print, print_json};
 
-/// Check who signed assets, libraries and plugins
+/// Check who signed files
 ///
 /// The command reads FILE and FILE.sig. The exit status is 1 unless each file has a valid signature
 /// of a key that you trust (`htex key trust`), or with --signed-by of this key. A texture of a

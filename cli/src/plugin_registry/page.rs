@@ -1,15 +1,13 @@
 //! The page of a registry.
 
-use htex_author::report::{Page, link, list, paragraph, preview};
+use htex_author::report::{Page, code_block, link, list, paragraph, preview};
 use htex_build::registry::Entry;
 
 /// Returns a page with all entries. It loads nothing but the previews.
 pub(crate) fn page(entries: &[Entry]) -> String {
     let mut page = Page::new("Plugins of htex");
-    page.html(&paragraph(&format!(
-        "{} plugins. `htex plugin install ID --registry ADDRESS` installs one.",
-        entries.len()
-    )));
+    page.html(&paragraph("This command installs one of them:"));
+    page.html(&code_block("htex plugin install ID --registry ADDRESS"));
     for entry in entries {
         let newest = entry.versions.iter().max_by(|a, b| a.version.cmp(&b.version));
         let Some(newest) = newest else { continue };

@@ -100,6 +100,8 @@ fn a_model_is_published_and_installed_by_its_id() {
         return;
     }
     assert!(build(&place, "broken.wasm", &[version("\\\"2.1.0\\\""), sound]));
+    assert!(build(&place, "second.wasm", &[version("\\\"2.1.0\\\"")]));
+    assert!(build(&place, "major.wasm", &[version("\\\"3.0.0\\\""), sound]));
     let (author, user) =
         (Person { place: &place, name: "author" }, Person { place: &place, name: "user" });
     author.does(&["key", "new", "alice"]);
@@ -109,6 +111,12 @@ fn a_model_is_published_and_installed_by_its_id() {
     for file in ["first.wasm", "broken.wasm"] {
         author.does(&["plugin", "export", file]);
         author.does(&["sign", file, "--key", "alice"]);
+    }
+    // What its author sees before it is published.
+    let against = ["--against", "first.wasm", "--only", "successor"];
+    for (file, code) in [("second.wasm", 0), ("major.wasm", 0), ("broken.wasm", 1)] {
+        let run = author.run(&[&["plugin", "check", file][..], &against].concat());
+        assert_eq!(run.code(), code, "{file}: {}", run.text());
     }
     publish(&place, &key, &[("2.0.0", "first.wasm")]);
     author.does(&["registry", "check", "registry", "--only", "org.example.none"]);

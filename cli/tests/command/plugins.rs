@@ -50,6 +50,8 @@ fn a_plugin_is_fitted_shown_and_played() {
     // Without the plugin the model is unknown.
     assert!(!htex(&["synth", &asset, "-o", &wav]).status.success());
     let dir = Path::new(&plugin).parent().unwrap().to_str().unwrap();
+    // A list loads no library in a folder, so it needs the descriptor beside the library.
+    text(&htex(&["plugin", "export", &plugin]));
     let found = htex(&["plugin", "list", "--json", "--plugin-dir", dir]);
     let found: serde_json::Value = serde_json::from_slice(&found.stdout).unwrap();
     let builtin = htex_host::Registry::builtin_names().len();

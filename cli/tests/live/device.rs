@@ -199,6 +199,8 @@ fn devices_are_listed_and_shown() {
     };
     let builtin = ids(&place.json(&["device", "list", "--json"]));
     assert!(builtin.contains(&"org.htex.file".to_owned()));
+    let exported = place.run(&["plugin", "export", library.to_str().unwrap()]);
+    assert_eq!(exported.code(), 0, "{}", exported.error());
     let found = place.json(&["device", "list", "--json", "--device-dir", folder]);
     assert_eq!(ids(&found)[0], "org.example.strip");
     assert_eq!(ids(&found)[1..], builtin);

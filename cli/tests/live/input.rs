@@ -178,6 +178,8 @@ fn inputs_are_listed_and_shown() {
     let library = ridges(&place);
     let named = library.to_str().unwrap();
     let folder = library.parent().unwrap().to_str().unwrap();
+    let exported = place.run(&["plugin", "export", named]);
+    assert_eq!(exported.code(), 0, "{}", exported.error());
     let twice = ["--device-file", named, "--device-dir", folder];
     let list = place.json(&[&["device", "list", "--json"], &twice[..]].concat());
     let mut inputs = list["devices"].as_array().unwrap().iter();

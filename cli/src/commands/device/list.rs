@@ -19,7 +19,8 @@ use crate::output::{print, print_json, tamed};
 /// program. If two outputs or two inputs have the same id, htex uses only the first that it finds.
 ///
 /// The command loads no library in a folder: it reads the descriptors beside the libraries, which
-/// `htex plugin export` and `htex plugin install` write.
+/// `htex plugin export` and `htex plugin install` write. Name a library with --device-file to see
+/// what is connected to it.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

@@ -80,7 +80,7 @@ pub fn preview(path: &str) -> String {
         let player = Element::new("audio").set("controls", "").set("preload", "none");
         player.set("src", path).render()
     } else {
-        Element::new("img").set("alt", "").set("src", path).render()
+        Element::new("img").set("alt", "").set("height", "160").set("src", path).render()
     }
 }
 

@@ -454,6 +454,19 @@ fn shapes() -> Vec<Small> {
                 &[[75.0, 0.6], [80.0, 0.55], [80.0, 0.6]],
             )
         },
+        // Lines that do not ascend are mixed to lines that do; a filter that is not stable is not.
+        Small {
+            models: vec![
+                (
+                    "arma",
+                    [[1.0, 0.9], [1.0, 2.0]]
+                        .map(|poles| [list(&poles), list(&[]), vec![2_000.0]].concat())
+                        .to_vec(),
+                ),
+                ("ar", [2.0, 0.5].map(|a| [list(&[a]), vec![2_000.0]].concat()).to_vec()),
+            ],
+            ..Small::new("rules_of_sets", &[[40.0, 0.4], [80.0, 0.4]], &[[60.0, 0.4], [40.0, 0.4]])
+        },
         // Narrower than what is left out where alpha or beta is below 1.
         Small {
             change: |m| m["band"]["high_hz"] = json!(21.25),

@@ -2,6 +2,7 @@
 //! samples of them.
 
 mod outputs;
+mod pages;
 mod released;
 mod targets;
 mod ways;

@@ -1,7 +1,9 @@
 //! `cargo xtask prove`: proofs that take too long for continuous integration. Its tests run only
 //! samples of them.
 
+mod apps;
 mod outputs;
+mod pages;
 mod released;
 mod targets;
 mod ways;
@@ -91,6 +93,11 @@ pub enum Proof {
     ///
     /// Each command must print what its page says, and each page may take at most ten minutes.
     Ways(ways::Options),
+    /// Build the example apps in Rust (examples/app-rust-*), and run the commands of their READMEs
+    ///
+    /// Each app is a copy in a folder outside the workspace. Linux needs libasound2-dev and
+    /// pkg-config. The proof takes some minutes, and about 1 GB in target/examples.
+    Apps(apps::Options),
     /// Test the studio in every window, in light and in dark; tests take two windows
     Studio,
     /// Print the time per sample in each language, relative to Rust
@@ -163,6 +170,7 @@ pub fn prove(proof: &Proof) -> Result<()> {
         Proof::BareRoot => released::bare_root(),
         Proof::Wine(options) => released::wine(options),
         Proof::Ways(options) => ways::prove(options),
+        Proof::Apps(options) => apps::prove(options),
         Proof::Studio => bindings::prove("studio"),
         Proof::Costs => bindings::prove("costs"),
     }

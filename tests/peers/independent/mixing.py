@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .shapes import Refusal, Values
+from .shapes import Refusal, Values, require_stable
 
 MOST_LINES = 64
 
@@ -62,6 +62,8 @@ def mix_speak(sets, weights):
 
 def mix_ar(sets, weights):
     require_equal(sets, 1, "model rates")
+    for values in sets:
+        require_stable(values[0])
     order = max(len(values[0]) for values in sets)
     padded = [values[0] + [0.0] * (order - len(values[0])) for values in sets]
     frequencies = mean([line_frequencies(a) for a in padded], weights)

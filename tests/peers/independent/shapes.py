@@ -51,11 +51,16 @@ def normed(shape: Callable, band: Band) -> Callable:
     return lambda f: shape(f) / rms
 
 
-def ar(values: Values, band: Band) -> Callable:
-    coefficients, rate = values
+def require_stable(coefficients: list[float]) -> None:
     a = np.asarray(coefficients, dtype=float)
     if len(a) and np.max(np.abs(np.roots(np.concatenate([[1.0], -a])))) >= 1:
         raise Refusal("the filter is not stable")
+
+
+def ar(values: Values, band: Band) -> Callable:
+    coefficients, rate = values
+    a = np.asarray(coefficients, dtype=float)
+    require_stable(coefficients)
     k = np.arange(1, len(a) + 1)
 
     def shape(f):

@@ -158,6 +158,7 @@ MIX = [
     Mutant("AR: filters of other rates are mixed", MIXING, '    require_equal(sets, 1, "model rates")\n', ""),
     Mutant("AR: filters of other orders are not mixed", MIXING, "    order = max(len(values[0]) for values in sets)\n    padded", '    require_lengths(sets, "orders")\n    order = max(len(values[0]) for values in sets)\n    padded'),
     Mutant("MFCC: lists of other lengths are mixed", MIXING, '    require_lengths(sets, "lengths")\n', "    shortest = min(len(values[0]) for values in sets)\n    sets = [[values[0][:shortest], *values[1:]] for values in sets]\n"),
+    Mutant("lines of each set ascend", MIXING, '    return [mix_lines([values[0] for values in sets], weights), mix_lines', '    for values in sets:\n        if any(b <= a for a, b in zip(values[0], values[0][1:])):\n            raise Refusal("lines")\n    return [mix_lines([values[0] for values in sets], weights), mix_lines'),
     Mutant("rounding puts a mean out of its range", MIXING, "    total = np.clip(total, numbers.min(axis=0), numbers.max(axis=0))\n", ""),
     Mutant("beta: a narrow band is played", SHAPES, "    if band.low + a > band.high - b:\n        raise Refusal(\"a band narrower than what is left out at its edges\")\n", "",
            "u or 1 - u is then below 0 and has no logarithm"),

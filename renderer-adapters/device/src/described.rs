@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use htex_base::native::description::read_descriptor;
 
-use crate::registry::{AdapterEntry, Origin};
 use crate::{
     Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Input, LibraryFault, Output,
     Settings, StreamFormat,
 };
 
-/// Returns the device of a library by the descriptor beside it; `None` if there is none.
-pub(crate) fn adapter(library: &Path) -> Result<Option<AdapterEntry>, DeviceError> {
+/// Returns the adapter of a library by the descriptor beside it; `None` if there is none.
+pub(crate) fn adapter(library: &Path) -> Result<Option<Arc<dyn Adapter>>, DeviceError> {
     let name = library.display().to_string();
     let failed = |what: String| DeviceError::File { path: name.clone(), what };
     let json = read_descriptor(library).map_err(|error| failed(error.to_string()))?;
@@ -20,8 +19,7 @@ pub(crate) fn adapter(library: &Path) -> Result<Option<AdapterEntry>, DeviceErro
     let descriptor: Descriptor =
         serde_json::from_str(&json).map_err(|error| failed(error.to_string()))?;
     descriptor.check()?;
-    let adapter = Arc::new(Described { descriptor, library: name });
-    Ok(Some(AdapterEntry { adapter, origin: Origin::Library(library.to_owned()) }))
+    Ok(Some(Arc::new(Described { descriptor, library: name })))
 }
 
 /// An adapter that cannot be opened.

@@ -57,7 +57,9 @@ impl Search {
     fn load(&self, file: &Path) -> Result<Option<AdapterEntry>, DeviceError> {
         #[cfg(feature = "descriptions")]
         if self.only_descriptors {
-            return crate::described::adapter(file);
+            let adapter = crate::described::adapter(file)?;
+            let origin = || Origin::Library(file.to_owned());
+            return Ok(adapter.map(|adapter| AdapterEntry { adapter, origin: origin() }));
         }
         AdapterEntry::load(file).map(Some)
     }

@@ -5,18 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::plain;
-use htex_base::native::description::{description, description_path, read_descriptor};
-use htex_base::storage::{Location, Storage};
+use htex_base::native::description::{description, description_path};
+use htex_base::storage::Location;
 use htex_build::registry::{Entry, PlatformFile, PluginKind, Version};
-use htex_format::signing::{FileSignature, PublicKey, SignedContent, SignedKind};
-use serde::{Deserialize, Serialize};
-use tempfile::TempDir;
+use htex_format::signing::PublicKey;
+use serde::Serialize;
 
-use crate::failure::{Exit, Failure, Result};
+use super::candidate::{Candidate, candidate_at, first_bad};
+use crate::failure::{Failure, Result};
 use crate::installed::{Identity, InstalledPlugin, file_name, folder_of, remove};
-use crate::invocation;
 use crate::keys::{KeyRing, Signer, signature_path};
-use crate::output::{OutputFile, note, print, show, shown};
+use crate::output::{OutputFile, note, show, shown};
 use crate::plugin_registry::{Fetched, PluginRegistry};
 
 /// Install a model or a device in your own folder
@@ -65,44 +64,6 @@ pub(crate) struct Consent {
     only_signed_by: Option<String>,
 }
 
-/// Remove plugins from your own folder
-#[derive(Args)]
-pub(crate) struct Remove {
-    /// Id of the plugin
-    id: String,
-
-    /// Remove only this version
-    #[arg(long, value_name = "VERSION")]
-    version: Option<semver::Version>,
-}
-
-/// Install newer versions of installed plugins from a registry
-///
-/// For each plugin, the command installs the newest version with the same major version, as `htex
-/// plugin install` does. If it cannot install one, it still updates the others.
-#[derive(Args)]
-pub(crate) struct Update {
-    /// Ids of the plugins [default: all that are installed and in the registry]
-    ids: Vec<String>,
-
-    /// Registry: a folder, or an address
-    #[arg(long, value_name = "DIR|URL")]
-    registry: String,
-
-    #[command(flatten)]
-    consent: Consent,
-}
-
-/// A plugin that may be installed, in a folder of its own.
-struct Candidate {
-    folder: TempDir,
-    file: PathBuf,
-    bytes: Vec<u8>,
-    signature: Option<Vec<u8>>,
-    kind: PluginKind,
-    is_module: bool,
-}
-
 /// What the registry says of a candidate.
 struct Promise<'a> {
     entry: &'a Entry,
@@ -112,7 +73,7 @@ struct Promise<'a> {
 
 /// A plugin that was installed.
 #[derive(Serialize)]
-struct Installation {
+pub(super) struct Installation {
     kind: PluginKind,
     id: String,
     version: semver::Version,
@@ -121,20 +82,6 @@ struct Installation {
     #[serde(skip_serializing_if = "Option::is_none")]
     signer: Option<Signer>,
     may: &'static str,
-}
-
-/// The results of `htex plugin check --json` and `htex device check --json`.
-#[derive(Deserialize)]
-struct Checked {
-    ok: bool,
-    checks: Vec<CheckedOne>,
-}
-
-#[derive(Deserialize)]
-struct CheckedOne {
-    check: String,
-    outcome: String,
-    message: String,
 }
 
 impl Install {
@@ -152,7 +99,7 @@ impl Install {
 }
 
 /// Installs the newest version of a registry's plugin that is wanted.
-fn install_from(
+pub(super) fn install_from(
     registry: &PluginRegistry,
     entry: &Entry,
     wanted: impl Fn(&semver::Version) -> bool,
@@ -165,136 +112,6 @@ fn install_from(
     let Fetched { file: bytes, signature } = registry.fetch(file)?;
     let candidate = Candidate::new(bytes, Some(signature), &entry.id)?;
     install(&candidate, Some(&Promise { entry, version, file }), consent)
-}
-
-/// Returns the candidate in a file or at an address.
-fn candidate_at(text: &str) -> Result<Candidate> {
-    let location = Location::parse(text.as_ref())?;
-    if location.local().is_some_and(|path| !path.exists()) {
-        return Err(Failure::Usage(format!(
-            "{}: there is no such file; name the registry of an id with --registry",
-            plain(text)
-        )));
-    }
-    let storage = Storage::from_environment()?;
-    let bytes = storage.read(&location, MOST_BYTES)?;
-    let beside = Location::parse(format!("{text}.sig").as_ref())?;
-    let signature = if storage.exists(&beside)? {
-        Some(storage.read(&beside, MOST_SIGNATURE_BYTES)?)
-    } else {
-        None
-    };
-    Candidate::new(bytes, signature, text)
-}
-
-/// The largest plugin, bytes.
-const MOST_BYTES: u64 = 1 << 28;
-/// Larger than any signature; the reader of signatures refuses what is too large.
-const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
-
-impl Candidate {
-    fn new(bytes: Vec<u8>, signature: Option<Vec<u8>>, shown: &str) -> Result<Self> {
-        let kind = PluginKind::of(&bytes).ok_or_else(|| {
-            Failure::Other(format!("{}: it is neither a model nor a device", plain(shown)))
-        })?;
-        let is_module = bytes.starts_with(b"\0asm");
-        let folder = tempfile::tempdir().map_err(Failure::other)?;
-        let extension = if is_module { "wasm" } else { std::env::consts::DLL_EXTENSION };
-        let file = folder.path().join(format!("plugin.{extension}"));
-        let own = OwnFolder::private(folder.path());
-        let name = file.file_name().unwrap_or_default();
-        own.write(name.as_ref(), &bytes).writing(&file)?;
-        Ok(Self { folder, file, bytes, signature, kind, is_module })
-    }
-
-    fn may(&self) -> &'static str {
-        if self.is_module {
-            "nothing outside its sandbox"
-        } else {
-            "everything that you can: it is a native library"
-        }
-    }
-
-    /// Returns who signed the plugin, and what the signature says.
-    fn signed(&self) -> Result<Option<(Signer, SignedContent)>> {
-        let Some(signature) = &self.signature else {
-            return Ok(None);
-        };
-        let parsed = FileSignature::from_json(signature)
-            .map_err(|error| Failure::Other(format!("its signature: {error}")))?;
-        let told = parsed.content;
-        let kind = match self.kind {
-            PluginKind::Model => SignedKind::Plugin,
-            PluginKind::Device => SignedKind::Device,
-        };
-        let content = SignedContent::plugin(kind, &told.name, &told.version, &self.bytes);
-        Ok(Some((Signer::of(&KeyRing::new()?, signature, &content)?, content)))
-    }
-
-    /// Returns id and version, read in another process.
-    fn identity(&self) -> Result<(Identity, String)> {
-        if read_descriptor(&self.file).reading(&self.file)?.is_none() {
-            let copy = self.folder.path().join("described.wasm");
-            let mut arguments = vec!["plugin", "export", path_text(&self.file)?];
-            if self.is_module {
-                arguments.extend(["--output", path_text(&copy)?]);
-            }
-            let (status, _, error) = run_again(&arguments)?;
-            if status != Some(0) {
-                return Err(Failure::Other(format!("it cannot be loaded: {}", error.trim())));
-            }
-            if self.is_module {
-                return identity_of(&copy);
-            }
-        }
-        identity_of(&self.file)
-    }
-}
-
-fn path_text(path: &Path) -> Result<&str> {
-    path.to_str().ok_or_else(|| Failure::other("the temporary folder's name is not Unicode"))
-}
-
-fn identity_of(file: &Path) -> Result<(Identity, String)> {
-    let json = read_descriptor(file).reading(file)?;
-    let json = json.ok_or_else(|| Failure::other("it has no descriptor"))?;
-    let identity = serde_json::from_str(&json)
-        .map_err(|error| Failure::Other(format!("its descriptor: {error}")))?;
-    Ok((identity, json))
-}
-
-/// Runs this program again. Returns its exit status, its output and its errors.
-fn run_again(arguments: &[&str]) -> Result<(Option<i32>, Vec<u8>, String)> {
-    let output = invocation::program()?.command().args(arguments).output();
-    let output = output.map_err(Failure::other)?;
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    Ok((output.status.code(), output.stdout, errors))
-}
-
-/// Runs the checker. Returns the first finding that speaks against the plugin.
-pub(in crate::commands) fn first_bad(
-    kind: PluginKind,
-    file: &Path,
-    against: Option<&Path>,
-) -> Result<Option<String>> {
-    let command = match kind {
-        PluginKind::Model => "plugin",
-        PluginKind::Device => "device",
-    };
-    let mut arguments = vec![command, "check", path_text(file)?, "--json"];
-    if let Some(older) = against {
-        arguments.extend(["--against", path_text(older)?, "--only", "successor"]);
-    }
-    let (_, json, errors) = run_again(&arguments)?;
-    let checked: Checked = serde_json::from_slice(&json)
-        .map_err(|_| Failure::Other(format!("it cannot be checked: {}", errors.trim())))?;
-    if checked.ok {
-        return Ok(None);
-    }
-    let bad = checked.checks.into_iter();
-    let mut bad = bad.filter(|one| !matches!(&*one.outcome, "passed" | "warning" | "skipped"));
-    let first = bad.next().map(|one| format!("check {}: {}", one.check, one.message));
-    Ok(Some(first.unwrap_or_default()))
 }
 
 /// Asks the user, or takes what was allowed beforehand.
@@ -492,67 +309,4 @@ impl Display for Installation {
         writeln!(f, "{} {id} {version}: {}", kind.name(), shown(file))?;
         writeln!(f, "{}; it may do {may}", plain(&signer))
     }
-}
-
-impl Remove {
-    pub(crate) fn run(self) -> Result {
-        let wanted = |one: &InstalledPlugin| {
-            self.version.as_ref().is_none_or(|version| *version == one.version)
-        };
-        let named: Vec<InstalledPlugin> =
-            InstalledPlugin::named(&self.id)?.into_iter().filter(wanted).collect();
-        if named.is_empty() {
-            let id = plain(&self.id);
-            return Err(Failure::Usage(format!(
-                "`{id}` is not installed in your folder; `htex plugin list` shows what is used"
-            )));
-        }
-        for one in named {
-            one.remove()?;
-            print(&format!("removed {} {}\n", one.id, one.version))?;
-        }
-        Ok(Exit::SUCCESS)
-    }
-}
-
-impl Update {
-    pub(crate) fn run(self) -> Result {
-        let registry = PluginRegistry::at(Location::parse(self.registry.as_ref())?)?;
-        let mut ids: Vec<String> = if self.ids.is_empty() {
-            InstalledPlugin::all()?.into_iter().map(|one| one.id).collect()
-        } else {
-            self.ids.clone()
-        };
-        ids.sort();
-        ids.dedup();
-        let mut is_clean = true;
-        for id in ids {
-            match update(&registry, &id, &self.consent) {
-                Ok(Some(installation)) => print(&installation.to_string())?,
-                Ok(None) => print(&format!("{id}: there is no newer version\n"))?,
-                // Only what is in the registry is updated if no id was given.
-                Err(Failure::Usage(_)) if self.ids.is_empty() => {}
-                Err(error) => {
-                    is_clean = false;
-                    eprintln!("htex: {}", plain(&error.to_string()));
-                }
-            }
-        }
-        Ok(Exit::ok_if(is_clean))
-    }
-}
-
-fn update(registry: &PluginRegistry, id: &str, consent: &Consent) -> Result<Option<Installation>> {
-    let installed = InstalledPlugin::named(id)?;
-    let newest = installed.first().ok_or_else(|| {
-        Failure::Usage(format!("`{}` is not installed; `htex plugin install` does it", plain(id)))
-    })?;
-    let entry = registry.entry(id)?;
-    let is_newer = |version: &semver::Version| {
-        *version > newest.version && version.major == newest.version.major
-    };
-    if entry.newest(is_newer).is_none() {
-        return Ok(None);
-    }
-    install_from(registry, &entry, is_newer, consent).map(Some)
 }

@@ -1,6 +1,8 @@
 //! The subcommand `htex plugin` for authors and users of models.
 
 mod bench;
+#[cfg(feature = "build")]
+mod candidate;
 mod check;
 mod export;
 mod info;
@@ -8,11 +10,15 @@ mod info;
 mod install;
 mod list;
 mod new;
+#[cfg(feature = "build")]
+mod remove;
+#[cfg(feature = "build")]
+mod update;
 
 use clap::Args;
 
 #[cfg(feature = "build")]
-pub(in crate::commands) use install::first_bad;
+pub(in crate::commands) use candidate::first_bad;
 
 use super::subcommands;
 use crate::failure::Result;
@@ -30,8 +36,8 @@ subcommands! {
         Info(info::Info),
         Check(check::Check),
         Install(install::Install) if feature = "build",
-        Remove(install::Remove) if feature = "build",
-        Update(install::Update) if feature = "build",
+        Remove(remove::Remove) if feature = "build",
+        Update(update::Update) if feature = "build",
         Export(export::Export),
         New(new::New),
         Bench(bench::Bench),

@@ -197,7 +197,8 @@ impl Devices {
             devices.add_folder(dir, search)?;
         }
         let listed = search.env.then(|| listed(VARIABLE)).into_iter().flatten();
-        let own = data(FOLDER).into_iter().chain(system(FOLDER)).filter(|_| search.user_dir);
+        let own = || data(FOLDER).into_iter().chain(system(FOLDER));
+        let own = search.user_dir.then(own).into_iter().flatten();
         for dir in listed.chain(own) {
             if let Err(error) = devices.add_folder(&dir, search) {
                 devices.notes.push(Note::LeftOut { error });

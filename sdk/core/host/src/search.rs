@@ -119,11 +119,14 @@ impl Search {
                 self.add_folder(&mut registry, Rank::Folder, &dir);
             }
         }
-        if let Some(dir) = data(FOLDER).filter(|_| self.user_dir) {
-            self.add_folder(&mut registry, Rank::User, &dir);
-        }
-        for dir in system(FOLDER).iter().filter(|_| self.user_dir) {
-            self.add_folder(&mut registry, Rank::System, dir);
+        // A browser has no environment, so nothing is asked of it unless folders are searched.
+        if self.user_dir {
+            if let Some(dir) = data(FOLDER) {
+                self.add_folder(&mut registry, Rank::User, &dir);
+            }
+            for dir in system(FOLDER) {
+                self.add_folder(&mut registry, Rank::System, &dir);
+            }
         }
         if self.builtin {
             registry.add_builtin();

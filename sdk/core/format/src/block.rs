@@ -362,6 +362,25 @@ fn put(out: &mut Vec<u8>, value: impl Encode) -> Result<(), WriteError> {
     }
 }
 
+/// Appends the values of packed or coded steps. After an error of the manifest, such as steps that
+/// are too large, a value may not be finite.
+fn put_steps(
+    all: &[u8],
+    steps: Steps,
+    field: &StoredField,
+    condition: usize,
+    flat: &mut Vec<f64>,
+) -> Result<(), BlockError> {
+    for (index, &q) in all.iter().enumerate() {
+        let value = steps.value(q.into());
+        if !value.is_finite() {
+            return Err(BlockError::NotFinite { field: field.name.clone(), condition, index });
+        }
+        flat.push(value);
+    }
+    Ok(())
+}
+
 struct Reader<'a> {
     bytes: &'a [u8],
     limit: usize,
@@ -404,7 +423,7 @@ impl Reader<'_> {
             CodeError::Invalid => BlockError::Coded,
             CodeError::TooMany => BlockError::TooMany(self.limit),
         })?;
-        for (parts, steps_of_fields) in all.iter_mut().zip(coded) {
+        for (condition, (parts, steps_of_fields)) in all.iter_mut().zip(coded).enumerate() {
             let mut steps_of_fields = steps_of_fields.into_iter();
             for (field, part) in fields.iter().zip(parts) {
                 let StoredAs::Coded(steps) = field.store else {
@@ -414,7 +433,7 @@ impl Reader<'_> {
                 if field.list {
                     part.push(own.len() as f64);
                 }
-                part.extend(own.into_iter().map(|q| steps.value(q.into())));
+                put_steps(&own, steps, field, condition, part)?;
             }
         }
         Ok(all.into_iter().map(|parts| parts.concat()).collect())
@@ -436,8 +455,7 @@ impl Reader<'_> {
         self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
         if let StoredAs::Packed(steps) = field.store {
             let all = self.steps(field, condition, count)?;
-            flat.extend(all.into_iter().map(|q| steps.value(q.into())));
-            return Ok(());
+            return put_steps(&all, steps, field, condition, flat);
         }
         for index in 0..count {
             let value = self.number(field.store).ok_or_else(|| truncated(field, condition))?;
@@ -449,8 +467,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Reads the steps of a packed list. Their values are finite, because the manifest check has
-    /// tested the value of every step.
+    /// Reads the steps of a packed list.
     fn steps(
         &mut self,
         field: &StoredField,

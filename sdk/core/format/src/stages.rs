@@ -42,7 +42,7 @@ pub(crate) const FIELDS: Stage = stage(
     false,
 );
 pub(crate) const BLOCKS: Stage = stage(
-    "parameter blocks, in the order of representations; the first finding of each block, which is read from its beginning, a code as a whole before its values: whether there is the entry, and then \
+    "parameter blocks, in the order of representations; the first finding of each block, which is read from its beginning, a code or a packed list as a whole before its values: whether there is the entry, and then \
              whether it is the container's own or was named before",
     false,
 );

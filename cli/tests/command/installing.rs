@@ -155,6 +155,15 @@ fn a_model_is_published_and_installed_by_its_id() {
     assert!(error.contains("changed after it was signed"), "{error}");
     assert_eq!(user.installed(), first);
 
+    // A module that carries the descriptor of another one, which lists would believe.
+    let first_module = std::fs::read(place.path("first.wasm")).unwrap();
+    let other = r#"{"id":"org.htex.ar","version":"9.0.0"}"#;
+    let liar = htex_base::native::description::with_section(&first_module, other).unwrap();
+    place.write("liar.wasm", liar);
+    let error = user.cannot(&["plugin", "install", "liar.wasm"]);
+    assert!(error.contains("carries the descriptor of org.htex.ar 9.0.0"), "{error}");
+    assert_eq!(user.installed(), first);
+
     // The user no longer trusts the key.
     user.does(&["key", "revoke", "alice"]);
     let error = user.cannot(&["plugin", "install", "first.wasm"]);

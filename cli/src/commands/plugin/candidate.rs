@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::plain;
-use htex_base::native::description::read_descriptor;
+use htex_base::native::description::{read_descriptor, section};
 use htex_base::storage::{Location, Storage};
 use htex_build::registry::PluginKind;
 use htex_format::signing::{FileSignature, SignedContent, SignedKind};
@@ -104,23 +104,32 @@ impl Candidate {
         Ok(Some((Signer::of(&KeyRing::new()?, signature, &content)?, content)))
     }
 
-    /// Returns id and version, read in another process.
+    /// Returns id and version, which the plugin itself says in another process, and its descriptor.
     pub(super) fn identity(&self) -> Result<(Identity, String)> {
-        if read_descriptor(&self.file).reading(&self.file)?.is_none() {
-            let copy = self.folder.path().join("described.wasm");
-            let mut arguments = vec!["plugin", "export", path_text(&self.file)?];
-            if self.is_module {
-                arguments.extend(["--output", path_text(&copy)?]);
-            }
-            let (status, _, error) = run_again(&arguments)?;
-            if status != Some(0) {
-                return Err(Failure::Other(format!("it cannot be loaded: {}", error.trim())));
-            }
-            if self.is_module {
-                return identity_of(&copy);
+        let copy = self.folder.path().join("described.wasm");
+        let mut arguments = vec!["plugin", "export", path_text(&self.file)?];
+        if self.is_module {
+            arguments.extend(["--output", path_text(&copy)?]);
+        }
+        let (status, _, error) = run_again(&arguments)?;
+        if status != Some(0) {
+            return Err(Failure::Other(format!("it cannot be loaded: {}", error.trim())));
+        }
+        let own = identity_of(if self.is_module { &copy } else { &self.file })?;
+        // A list would believe what the module carries.
+        if self.is_module && section(&self.bytes).is_some() {
+            let carried = identity_of(&self.file)?.0;
+            if (&carried.id, &carried.version) != (&own.0.id, &own.0.version) {
+                return Err(Failure::Other(format!(
+                    "it is {} {}, and carries the descriptor of {} {}; not installed",
+                    own.0.id,
+                    own.0.version,
+                    plain(&carried.id),
+                    carried.version
+                )));
             }
         }
-        identity_of(&self.file)
+        Ok(own)
     }
 }
 

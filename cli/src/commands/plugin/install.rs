@@ -123,7 +123,7 @@ fn ask(question: &str, is_allowed: bool, flag: &str) -> Result<()> {
     if !std::io::stdin().is_terminal() {
         return Err(refuse());
     }
-    eprint!("{question}. Install it? [y/N] ");
+    eprint!("{}. Install it? [y/N] ", plain(question));
     let _ = std::io::stderr().flush();
     let mut answer = String::new();
     std::io::stdin().lock().read_line(&mut answer).map_err(Failure::other)?;
@@ -154,6 +154,7 @@ fn install(
             format!("it is a native library ({by}), which can do everything that you can");
         ask(&question, consent.yes, "--yes")?;
     }
+    let (Identity { id, version }, descriptor) = candidate.identity()?;
     note(&["the plugin is checked, which takes a while".to_owned()]);
     let bad = first_bad(candidate.kind, &candidate.file, None)?;
     if let Some(problem) = bad {
@@ -161,7 +162,6 @@ fn install(
             "it breaks a rule of plugins: {problem}; not installed"
         )));
     }
-    let (Identity { id, version }, descriptor) = candidate.identity()?;
     let is = (id.as_str(), version.to_string());
     if let Some((_, content)) = &signed
         && (content.name.as_str(), content.version.clone()) != is

@@ -467,6 +467,9 @@ fn shapes() -> Vec<Small> {
             ],
             ..Small::new("rules_of_sets", &[[40.0, 0.4], [80.0, 0.4]], &[[60.0, 0.4], [40.0, 0.4]])
         },
+        // Filters of different orders, of which the lower one has lines that do not ascend.
+        of_orders("poles_of_lower_order", |lines| [list(lines), list(&[]), vec![2_000.0]].concat()),
+        of_orders("zeros_of_lower_order", |lines| [list(&[]), list(lines), vec![2_000.0]].concat()),
         // Narrower than what is left out where alpha or beta is below 1.
         Small {
             change: |m| m["band"]["high_hz"] = json!(21.25),
@@ -493,6 +496,14 @@ fn shapes() -> Vec<Small> {
             ..Small::of_models("other_order_of_fields", vec![("sbeta", vec![2.5, 1.5])])
         },
     ]
+}
+
+/// Two sets of lines, of which the first breaks a rule, and a mix of both.
+fn of_orders(name: &'static str, set: fn(&[f64]) -> Vec<f64>) -> Small {
+    Small {
+        models: vec![("arma", vec![set(&[1.0, 0.9]), set(&[0.5, 1.0, 2.0])])],
+        ..Small::new(name, &[[40.0, 0.4], [80.0, 0.4]], &[[60.0, 0.4], [80.0, 0.4]])
+    }
 }
 
 /// Parameters that a player refuses.

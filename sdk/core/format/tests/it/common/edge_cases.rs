@@ -679,12 +679,13 @@ fn blocks() -> Vec<Named> {
                 of_one_field(log, false, &[0xFF, 0xFF]),
             ]),
         ),
-        // The value 5e308, in a list that is whole and in one that is cut off.
+        // The value 5e308, in a list that is whole, in one that is cut off, and in one with another k.
         (
             "parameters_not_finite_packed",
             with(&[
                 of_one_field(json!({ "packed": { "scale": 1e308 } }), true, &[1, 0, 0xA0]),
                 of_one_field(json!({ "packed": { "scale": 1e308 } }), true, &[2, 0, 0xA0]),
+                of_one_field(json!({ "packed": { "scale": 1e308 } }), true, &[1, 0x20, 0xA0]),
             ]),
         ),
         // No number; 9 and 8, where k of 0 and of 1 take as many bits; 0, 255 and 0, where no k

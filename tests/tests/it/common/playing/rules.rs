@@ -465,11 +465,19 @@ fn shapes() -> Vec<Small> {
                 ),
                 ("ar", [2.0, 0.5].map(|a| [list(&[a]), vec![2_000.0]].concat()).to_vec()),
             ],
-            ..Small::new("rules_of_sets", &[[40.0, 0.4], [80.0, 0.4]], &[[60.0, 0.4], [40.0, 0.4]])
+            ..Small::new(
+                "refused_rules_of_sets",
+                &[[40.0, 0.4], [80.0, 0.4]],
+                &[[60.0, 0.4], [40.0, 0.4]],
+            )
         },
         // Filters of different orders, of which the lower one has lines that do not ascend.
-        of_orders("poles_of_lower_order", |lines| [list(lines), list(&[]), vec![2_000.0]].concat()),
-        of_orders("zeros_of_lower_order", |lines| [list(&[]), list(lines), vec![2_000.0]].concat()),
+        of_orders("refused_poles_of_lower_order", |lines| {
+            [list(lines), list(&[]), vec![2_000.0]].concat()
+        }),
+        of_orders("refused_zeros_of_lower_order", |lines| {
+            [list(&[]), list(lines), vec![2_000.0]].concat()
+        }),
         // Narrower than what is left out where alpha or beta is below 1.
         Small {
             change: |m| m["band"]["high_hz"] = json!(21.25),

@@ -78,7 +78,7 @@ pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_uni
 pub use fluctuation::Fluctuation;
 pub use htex_base::files::{remove_unfinished, replace_file, write_file};
 pub use htex_base::finding::{FileReport, Finding, Report, Severity};
-pub use htex_model::Band;
+pub use htex_model::{Band, is_model_id};
 pub use json_text::{JsonError, parse_json};
 pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 pub use license::check_license;

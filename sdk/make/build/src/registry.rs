@@ -109,7 +109,7 @@ impl Entry {
     }
 
     fn check(&self) -> Result<(), String> {
-        if !htex_model::is_model_id(&self.id) {
+        if !htex_format::is_model_id(&self.id) {
             return Err(format!("`{}` is not a reverse-DNS id", self.id));
         }
         htex_format::check_license(&self.license).map_err(|error| error.to_string())?;

@@ -1,10 +1,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_format::signing::SignedContent;
 use htex_host::Registry;
 
-use crate::assets::AssetSummary;
-use crate::commands::sign::content_of;
+use crate::assets::{AssetSummary, read_asset};
 use crate::commands::validate::refuse_library;
 use crate::failure::{Exit, Result, for_file};
 use crate::keys::Signer;
@@ -54,7 +54,9 @@ fn summary(file: &Path) -> Result<AssetSummary> {
     let asset = htex_format::Asset::open(file).map_err(for_file(file))?;
     let bytes = std::fs::metadata(file).map_or(0, |m| m.len());
     let mut summary = AssetSummary::new(file, bytes, &asset);
-    summary.signer = Signer::of_file(file, |_| content_of(file))?;
+    summary.signer = Signer::of_file(file, |_| {
+        SignedContent::asset(&read_asset(file)?).map_err(for_file(file))
+    })?;
     let models = Registry::builtin();
     let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
     let representations = asset.manifest.representations.iter();

@@ -80,7 +80,7 @@ impl Display for Signatures {
 }
 
 /// Returns what a signature of a local file is of.
-pub(super) fn content_of(file: &Path) -> Result<SignedContent> {
+fn content_of(file: &Path) -> Result<SignedContent> {
     let mut start = Vec::new();
     let opened = open_regular(file).and_then(|f| f.take(8).read_to_end(&mut start));
     opened.reading(file)?;

@@ -12,7 +12,6 @@ use htex_format::signing::{
 };
 use serde::Serialize;
 
-use super::sign::content_of;
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::keys::{KeyRing, Signer, plugin_content, signer_at};
 use crate::output::{print, print_json};
@@ -126,12 +125,12 @@ fn content(
         (SignedKind::Plugin | SignedKind::Device, None) => {
             Err(Failure::usage(format!("{shown}: download a plugin before you verify it")))
         }
-        (_, Some(file)) => content_of(file),
-        (SignedKind::Library, None) => {
+        // Read as what the signature says, whatever the file is: nothing is loaded.
+        (SignedKind::Library, _) => {
             let library = Library::open_located(storage, location).map_err(for_file(in_file))?;
             Ok(SignedContent::library(library.index()))
         }
-        (SignedKind::Asset, None) => {
+        (SignedKind::Asset, _) => {
             let bytes = storage.read(location, Limits::default().file_bytes)?;
             SignedContent::asset(&bytes).map_err(for_file(in_file))
         }

@@ -194,6 +194,19 @@ fn no_list_loads_a_native_library() {
         return;
     }
     let loaded = place.path("loaded");
+    // A signature that calls the library an asset.
+    let key = htex_format::signing::SecretKey::from_bytes(&[7; 32]);
+    let mut content = htex_format::signing::SignedContent::plugin(
+        htex_format::signing::SignedKind::Asset,
+        "Oak",
+        "",
+        b"",
+    );
+    content.blake3 = "0".repeat(64);
+    place.write("strip.so.sig", content.sign(&key).to_json());
+    assert_eq!(user.run(&["verify", "strip.so"]).code(), 1);
+    assert!(!loaded.exists(), "`verify` loaded a library");
+    std::fs::remove_file(place.path("strip.so.sig")).unwrap();
     let error = user.cannot(&["plugin", "install", "strip.so"]);
     assert!(error.contains("can do everything that you can"), "{error}");
     assert!(!loaded.exists(), "the library was loaded before its user agreed");

@@ -20,15 +20,16 @@ const ELSEWHERE = "elsewhere.example";
 const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';
 
 /**
- * Records what an audio node plays: call `record(node)`, then `await recorded()`. A quantum without
- * input, for example after a node was disconnected, is silent. A quantum that was not rendered is
- * an error, because it would look like a click. `hold(context, ms)` blocks the audio thread for a
- * while, as on a busy machine.
+ * Records what an audio node plays: call `record(node)`, then `await recorded()`. The recording
+ * begins with the first quantum that has input, because a busy browser connects the recorder some
+ * quanta after it made it. A later quantum without input, for example after a node was
+ * disconnected, is silent. A quantum that was not rendered is an error, because it would look like a
+ * click. `hold(context, ms)` blocks the audio thread for a while, as on a busy machine.
  */
 const RECORDER = `
 const source = \`registerProcessor("record", class extends AudioWorkletProcessor {
   constructor() { super(); this.blocks = []; this.port.onmessage = () => this.port.postMessage(this.blocks.splice(0)); }
-  process([[input]]) { this.blocks.push({ frame: currentFrame, samples: input ? input.slice() : new Float32Array(128) }); return true; } });
+  process([[input]]) { this.isConnected ||= !!input; if (this.isConnected) this.blocks.push({ frame: currentFrame, samples: input ? input.slice() : new Float32Array(128) }); return true; } });
 registerProcessor("hold", class extends AudioWorkletProcessor {
   constructor() { super(); this.port.onmessage = ({ data }) => { this.port.postMessage(0); for (const end = Date.now() + data; Date.now() < end; ); }; }
   process() { return true; } });\`;

@@ -13,7 +13,7 @@ use crate::output::print;
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
 
-/// What a project is called, where it is written, and where its crates come from.
+/// Name and folder of a new project, and the source of its crates.
 #[derive(Args)]
 pub(crate) struct NewProject {
     /// Name of the project: lower-case letters, digits and hyphens

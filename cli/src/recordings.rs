@@ -33,9 +33,9 @@ pub(crate) struct RecordingArgs {
     force: Option<f64>,
 
     /// Speed and normal force, e.g. speed=80,force=0.4 (mm/s, N). Give one such pair for all
-    /// recordings, or one pair for each recording in their order. If a recording contains the
-    /// finger's motion, htex leaves out segments whose speed or force differs from this pair by
-    /// more than 10 %
+    /// recordings, or one pair for each recording, in the order of the recordings. If a recording
+    /// contains the finger's motion, htex leaves out segments whose speed or force differs from
+    /// this pair by more than 10 %
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 

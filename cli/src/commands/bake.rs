@@ -23,11 +23,11 @@ const MOST: i64 = BakeLimits::MOST as i64;
 /// Writes a block of bytes, from which a small player on the microcontroller renders samples (see
 /// docs/microcontroller.md).
 ///
-/// The block stores the texture at the conditions of a grid. A condition is a pair of a speed and a
+/// The block stores the texture at a grid of conditions. A condition is a pair of a speed and a
 /// force. Between the conditions, the player interpolates. The command prints the size of the block
 /// and two nine-band errors: one at the conditions, and one midway between the conditions. The
-/// nine-band error is the largest difference between the spectra of the block and of the asset in
-/// any of nine frequency bands.
+/// nine-band error compares the spectrum of the block with the spectrum of the asset in nine
+/// frequency bands, and is the largest difference in any of these bands.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
@@ -64,9 +64,9 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
-    /// Also store the fluctuation in time that the asset states (`htex info`): the player makes the
-    /// texture stronger and weaker, with the same mean level. Nobody has felt yet whether this makes
-    /// a texture more real
+    /// Also store how much the texture's strength fluctuates over time, if the asset states this
+    /// (`htex info`). The player then makes the texture stronger and weaker, with the same mean
+    /// level. Nobody has felt yet whether this makes a texture more real
     #[arg(long)]
     fluctuation: bool,
 

@@ -20,8 +20,8 @@ use crate::outputs::check_outputs;
 ///
 /// The command changes only the metadata and extensions that you give. An empty text removes an
 /// entry, e.g. --author "". The flag --tag replaces all tags of the asset. Parameters, recorded
-/// spectra and embedded models with their signatures stay the same, byte for byte. With --storage,
-/// the parameters keep their values, but not their bytes.
+/// spectra and embedded models with their signatures stay the same, byte for byte. The flag
+/// --storage changes the bytes of the parameters, but not their values.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
@@ -44,9 +44,9 @@ pub(crate) struct Edit {
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension: Vec<String>,
 
-    /// Code the asset, or make it plain again. A coded asset plays the same texture and has fewer
-    /// bytes, but readers of version 1.0 of the format refuse it. `auto`: code it only with more
-    /// than eight conditions, and only if the file becomes smaller
+    /// Make the asset a coded asset, or make a coded asset plain again. A coded asset plays the
+    /// same texture and has fewer bytes, but readers of version 1.0 of the format refuse it.
+    /// `auto`: code it only with more than eight conditions, and only if the file becomes smaller
     #[arg(long, value_enum)]
     storage: Option<Coding>,
 

@@ -24,11 +24,11 @@ const LARGE_STEP_DB: f64 = 4.0;
 /// The participant touches the display and adjusts how strong the texture is. htex stores this
 /// gain, and `htex play --person` plays with the stored gain.
 ///
-/// The texture plays until you accept a gain. Type `+` or `-` and Enter to make the texture 1 dB
-/// stronger or weaker, or `++` or `--` and Enter to change its level by 4 dB. Press only Enter to
-/// accept the gain, or Ctrl-C to leave without storing a gain. By default, the texture starts 20 dB
-/// below the device's limit, and becomes stronger only when you type `+`. (In the paper,
-/// participants start at the limit.)
+/// The texture plays until you accept a gain. Type `+` or `-` and press Enter to make the texture 1
+/// dB stronger or weaker. Type `++` or `--` and press Enter to make it 4 dB stronger or weaker.
+/// Press only Enter to accept the gain, or Ctrl-C to leave without storing a gain. By default, the
+/// texture starts 20 dB below the device's limit, and becomes stronger only when you type `+`. (In
+/// the paper, participants start at the limit.)
 ///
 /// htex stores one gain for each combination of a person, a texture, and a device with its profile.
 /// All models of a texture share this gain. htex identifies a texture by its name and author, so

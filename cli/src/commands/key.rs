@@ -11,8 +11,8 @@ use crate::output::{print, show};
 
 /// Make keys, and say whose signatures you trust
 ///
-/// A key signs assets, libraries and plugins (`htex sign`). Its public half, 64 hexadecimal digits,
-/// is what you give to others. The keys are in the folder `keys` of your settings
+/// A key signs assets, libraries and plugins (`htex sign`). Give other people its public half,
+/// which is 64 hexadecimal digits. The keys are in the folder `keys` of your settings
 /// (`~/.config/htex`, or the folder in HTEX_CONFIG_DIR).
 #[derive(Args)]
 pub(crate) struct Key {

@@ -26,7 +26,7 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
 ///
-/// Fits the recordings that the recipe names, and imports files of other formats that the recipe
+/// Fits the recordings that the recipe names. Also imports files of other formats that the recipe
 /// names, as `htex import` does. Writes the library (DIR/NAME.htexlib), each texture as a file (in
 /// DIR/textures), a report (DIR/build-report.json) and a catalogue (DIR/index.html). If the build
 /// fails, the report contains the error. A recipe may name its recordings and other files by URI.

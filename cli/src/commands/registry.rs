@@ -39,8 +39,9 @@ impl Registry {
 
 /// Check the entries of a registry, and the files in it
 ///
-/// Checks each entry's keys and licence, the BLAKE3 and the signature of each file in the registry,
-/// and runs the checker on each model that is a module. The exit status is 1 if something is wrong.
+/// Checks each entry's keys and licence, and the BLAKE3 hash and the signature of each file in the
+/// registry. Also runs the checker on each model that is a WASM module. The exit status is 1 if
+/// something is wrong.
 #[derive(Args)]
 pub(crate) struct Check {
     /// Folder of the registry

@@ -19,7 +19,8 @@ use crate::output::{OutputFile, show, shown};
 ///
 /// Writes the signature of FILE to FILE.sig, beside it. The signature states the kind, the name,
 /// the version and the BLAKE3 hash of the file. The signature of a library covers all of its
-/// textures, also those that are fetched alone. To read the name of a plugin, the command loads it.
+/// textures, including textures that a program downloads one at a time. To read the name of a
+/// plugin, the command loads it.
 #[derive(Args)]
 pub(crate) struct Sign {
     /// Assets, libraries, and plugins (models or devices)

@@ -42,7 +42,7 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
-    /// Make the texture stronger and weaker in time, as its recording was, if the asset states how
+    /// Make the texture stronger and weaker over time, as in its recording, if the asset states how
     /// much (`htex info`). Its mean level stays the same. Nobody has felt yet whether this makes a
     /// texture more real
     #[arg(long)]

@@ -47,9 +47,9 @@ pub(crate) struct Validate {
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models that are embedded in assets and in the assets of scenes, and compare
-    /// the models' descriptors with the fields of the assets. The models run in a sandbox. By
-    /// default, htex runs no embedded model
+    /// Also load the models that are embedded in assets, including the assets of scenes. htex then
+    /// compares the models' descriptors with the fields of the assets. The models run in a sandbox.
+    /// By default, htex runs no embedded model
     #[arg(long)]
     embedded_plugins: bool,
 

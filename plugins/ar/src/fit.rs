@@ -1,9 +1,9 @@
 //! Estimation of the filter coefficients.
 //!
-//! The fit has no resonance narrower than a bin, because the spectrum cannot show such a resonance.
-//! Without this limit, the Yule–Walker method would find a narrower resonance for a tone. A voice
-//! with such a resonance would take hours to reach its level, and its spectrum, read at the bins,
-//! would be wrong by tens of decibels.
+//! The fit makes no resonance narrower than a bin, because the spectrum cannot show such a
+//! resonance. Without this limit, the Yule–Walker method would find a narrower resonance for a
+//! tone. A voice with such a resonance would take hours to reach its level. Its spectrum at the
+//! bins would be wrong by tens of decibels.
 
 use alloc::vec::Vec;
 

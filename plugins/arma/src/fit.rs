@@ -3,10 +3,11 @@
 //! Poles and zeros depend on each other, so the fit estimates them alternately, in several rounds.
 //! For the poles, the fit divides the spectrum by the spectrum of the zeros and applies the
 //! Yule–Walker method. For the zeros, the fit inverts the spectrum, multiplies it by the spectrum
-//! of the poles, and again applies the Yule–Walker method. The fit keeps the round with the
-//! smallest Itakura–Saito distance at the best level. In this round, the spectrum is most likely to
-//! be a spectrum of Gaussian noise. No resonance is narrower than a bin, because the spectrum
-//! cannot show such a resonance.
+//! of the poles, and again applies the Yule–Walker method. The fit computes the Itakura–Saito
+//! distance of each round at the level that minimises this distance. The fit keeps the round with
+//! the smallest distance. If the recording is Gaussian noise, its spectrum is most likely with the
+//! parameters of this round. No resonance is narrower than a bin, because the spectrum cannot show
+//! such a resonance.
 
 use alloc::vec::Vec;
 

@@ -1,19 +1,19 @@
-//! Fit of the knots of the stored curve to the band energies of a recording.
+//! Fits the knots of the stored curve to the band energies of a recording.
 //!
-//! The cost has two terms. The first term is a sum over bands of the squared logarithm of the ratio
-//! of fitted energy to wanted energy. The second term is 1e-4 times a sum over knots of the squared
-//! distance between the knot and its band's mean level. Both are logarithms of power. For noise,
-//! the fitted energies are within a hundredth of a decibel of the wanted energies. The second term
-//! determines the solution in two cases. In the first case, no spectrum has the wanted energies. In
-//! the second case, only one spectrum has them, and its knots differ by hundreds of decibels, as
-//! happens next to a line.
+//! The cost has two terms. The first term is a sum over the bands: the squared logarithm of the
+//! fitted energy divided by the wanted energy. The second term is 1e-4 times a sum over the knots:
+//! the squared difference between the level of the knot and the mean level of its band. Both are
+//! logarithms of power. For noise, the fitted energies are within a hundredth of a decibel of the
+//! wanted energies. The second term determines the solution in two cases. In the first case, no
+//! spectrum has the wanted energies. In the second case, only one spectrum has the wanted energies,
+//! but its knots differ by hundreds of decibels. This happens next to a spectral line.
 //!
 //! The solution is the spectrum with the largest entropy among all spectra with the recording's
 //! energies. The fit finds this spectrum with the Levenberg–Marquardt method. Files store the
 //! curve, not the energies, so a player does not have to solve equations. Rounding can give
 //! energies that no spectrum has, because bands share bins. Only the fit has to deal with such
-//! energies. The window of a measurement blurs the spectrum. Therefore, the voice's spectrum is
-//! sharpened until a measurement shows the stated spectrum.
+//! energies. The window of a measurement blurs the spectrum. Therefore, the voice sharpens its
+//! spectrum until a measurement shows the stated spectrum.
 //!
 //! We compared this fit with a maximum-likelihood fit to the bins, computed in Python (Whittle's
 //! method, which minimises the sum of `ln S + P / S`). We tested both fits on held-out data, from

@@ -5,8 +5,9 @@
 //! regresses ratings on energy differences in such bands (section "Linear regression"). The r² of
 //! this regression, which the paper calls low, no longer grows above nine bands. Thirty bands keep
 //! a spectrum within about 0.3 dB of the recording in third-octave bands. Files do not store the
-//! energies, but a curve with these energies. The curve is in decibels and piecewise linear, on the
-//! frequency axis on which the bands are equally spaced. Its knots are at the bands' apexes.
+//! energies, but a curve with these energies. The curve is in decibels, and it is piecewise linear.
+//! Its frequency axis is the axis on which the bands are equally spaced. Its knots are at the
+//! bands' apexes.
 //!
 //! By default, there are thirty knots from edge to edge of the asset's frequency band. The levels
 //! of the knots are in steps of 1 dB, and the differences of levels are stored in a Rice code. The
@@ -69,9 +70,10 @@ const MAX_STEPS: f64 = 255.0;
 /// Resolution with which files store the step, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest distance, dB, of a band below the loudest band, and of a knot below the highest knot. A
-/// band without energy gets this level below the loudest band. The measure of band errors has the
-/// same limit, because it adds 1e-12 of the largest energy to every band.
+/// Largest level difference, dB, between the loudest band and another band, and between the highest
+/// knot and another knot. A band without energy gets a level that is this far below the loudest
+/// band. The measure of band errors has the same limit, because it adds 1e-12 of the largest energy
+/// to every band.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {

@@ -3,8 +3,8 @@
 //! 8-bit PNG.
 //!
 //! Neighbouring pixels are `pitch_mm` apart. The first row is at the top. The map repeats beyond
-//! its edges. Between pixels, the friction is interpolated by a cubic (Catmull and Rom), so that a
-//! finger feels no steps.
+//! its edges. Between pixels, the voice interpolates the friction with a cubic (Catmull and Rom),
+//! so that a finger feels no steps.
 //!
 //! The voice follows the finger's place (`htex.motion/1`). The voice subtracts the mean from the
 //! friction at this place and limits the result to the asset's frequency band. Without motion

@@ -3,8 +3,8 @@
 //!
 //! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns α, β
 //! and scale. Therefore, the nearest density is the solution of a least-squares problem in which α
-//! and β are bounded. If a density is so faint at some point that its decibels are cut off, the
-//! problem is not linear, and the fit uses a search instead.
+//! and β are bounded. If a density is very faint at some point, its decibels are cut off at this
+//! point. The problem is then not linear, and the fit uses a search instead.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;

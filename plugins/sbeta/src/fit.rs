@@ -21,10 +21,10 @@
 //! | the default: `decibel`, bound 0.5, 20 bins | 2.3, 2.8, 7.9 | 4.1, 9.4, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //!
 //! If all peaks are on one side of the band, the density that fits the peaks best has a spike at
-//! frequencies without a peak, many decibels too high. Therefore, if the maximum of a fit to peaks
-//! is higher than twice the largest bin, a second fit is made to peaks and bins. The result is the
-//! fit with the smaller distance in decibels to peaks and bins, when each of the two fits has its
-//! best scale. The option `refit=never` keeps the first fit.
+//! frequencies without a peak. This spike is many decibels too high. Therefore, if the maximum of a
+//! fit to peaks is higher than twice the largest bin, a second fit is made to peaks and bins. To
+//! compare the two fits, each of them gets its best scale. The result is the fit with the smaller
+//! distance, in decibels, to the peaks and bins. The option `refit=never` keeps the first fit.
 //!
 //! With `decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen such
 //! that the density has the energy of the points. If the density is still higher than twice the

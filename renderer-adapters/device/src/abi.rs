@@ -2,8 +2,8 @@
 //! output or an input) share.
 //!
 //! A library exports one function, [`EntryFn`], which returns its [`DeviceTable`]. The functions
-//! take and return only scalars, and buffers as a pointer and a length. A negative result is a
-//! [`Code`].
+//! take and return only scalars. A buffer is passed as a pointer and a length. A negative result is
+//! a [`Code`].
 //!
 //! A function that returns a text writes as much of the text as fits into the caller's buffer, and
 //! returns the length of the whole text in bytes. If the buffer was too small, the caller calls the

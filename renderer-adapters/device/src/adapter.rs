@@ -11,7 +11,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 /// A family of devices, such as all sound cards. Implement this trait to add a device.
 ///
 /// An adapter describes its devices and opens them. All devices of an adapter have the same
-/// direction ([`Descriptor::direction`]): an adapter has either outputs, which play samples, or
+/// direction ([`Descriptor::direction`]). An adapter has either outputs, which play samples, or
 /// inputs, which record samples. An adapter implements the methods of its direction. By default,
 /// the methods of the other direction return [`DeviceError::Direction`].
 ///
@@ -24,12 +24,12 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// - A program creates the adapter once and shares it between threads, so the methods take `&self`
 ///   and may run at the same time.
-/// - [`Self::descriptor`] is called first. The settings that the host passes in later calls are
-///   settings of this descriptor.
-/// - [`Self::endpoints`] is called to list the hardware, e.g. by `htex device list`.
-/// - [`Self::capabilities`] is called before every opening of an output. From the capabilities, the
+/// - [`Self::descriptor`] is called first. In later calls, the host passes only settings that this
+///   descriptor lists.
+/// - The host calls [`Self::endpoints`] to list the hardware, e.g. in `htex device list`.
+/// - The host calls [`Self::capabilities`] before it opens an output. From the capabilities, the
 ///   host chooses the rate and the block size.
-/// - [`Self::open_output`] or [`Self::open_input`] is called last. The open device may move to
+/// - The host calls [`Self::open_output`] or [`Self::open_input`] last. The open device may move to
 ///   another thread.
 ///
 /// An adapter receives complete [`Settings`]: the host has applied the profile and the defaults,
@@ -242,7 +242,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// - An output has one stream of samples of one quantity at one rate. If a device has several
 ///   channels, its adapter needs a setting that determines what each channel plays.
-/// - A paced output of display voltage must keep its mean voltage within
+/// - An output that plays display voltages at the pace of a clock must keep their mean within
 ///   [`DirectVoltage`](crate::DirectVoltage). For a native library, the host checks the mean
 ///   voltage. A built-in adapter must itself check the mean voltage.
 /// - The host checks the rate, channels, counts and samples of an input from a native library
@@ -306,8 +306,8 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 /// call. At the end, the host calls [`Self::finish`]. Calls never overlap, but they may come from
 /// different threads.
 ///
-/// An output that is dropped without [`Self::finish`] aborts: it goes to zero at once, and an
-/// unfinished file is removed. The drop may happen at any time, even after an error.
+/// An output that is dropped without [`Self::finish`] aborts: it goes to zero at once, and removes
+/// an unfinished file. The drop may happen at any time, even after an error.
 ///
 /// An output with a clock needs its own thread or driver, because the output must go to zero even
 /// if the host hangs and writes no more samples.
@@ -317,7 +317,7 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 /// - [`Status::latency_s`] is the device's own estimate. The host does not measure it.
 /// - If samples come too late, an electrovibration display must return [`DeviceError::Underflow`]
 ///   and stay at zero. Other outputs may continue. For example, the built-in sound card fades to
-///   silence and counts an underrun, which a host sees only in [`Status::underruns`].
+///   silence and counts an underrun. A host sees this underrun only in [`Status::underruns`].
 ///
 /// [`Adapter`] has a complete example.
 pub trait Output: Send {
@@ -367,9 +367,9 @@ pub trait Input: Send {
     /// number of channels. No frame is lost between two calls. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// [`DeviceError::Overrun`] if frames were lost because they were read too late. Also returns
-    /// an error if the device is gone, was not started, or has been finished. After an error the
-    /// input delivers nothing more.
+    /// Returns [`DeviceError::Overrun`] if the input lost frames because the host read them too
+    /// late. Also returns an error if the device is gone, was not started, or has been finished.
+    /// After an error the input delivers nothing more.
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError>;
 
     /// Stops sampling for good. The input may already have stopped. `[one thread at a time; may

@@ -120,7 +120,8 @@ impl Capabilities {
     /// the device was opened.
     ///
     /// # Errors
-    /// [`DeviceError::OverLimit`] for the first sample that is over the limit or not a number.
+    /// Returns [`DeviceError::OverLimit`] for the first sample that is over the limit or not a
+    /// number.
     pub fn check_samples(&self, samples: &[f32], first_frame: u64) -> Result<(), DeviceError> {
         // Without a limit, only NaN and infinity are refused.
         let limit = self.limit.map_or(f32::MAX, |limit| limit as f32);

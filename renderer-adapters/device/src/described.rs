@@ -1,4 +1,4 @@
-//! Devices that are known by their descriptor alone, without their code.
+//! Devices of which the program has only the descriptor, not the code.
 
 use std::path::Path;
 use std::sync::Arc;

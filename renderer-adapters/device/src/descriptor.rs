@@ -107,10 +107,10 @@ pub enum FromScene {
     /// The scene may set the value, but a value from the user takes precedence.
     #[default]
     Any,
-    /// The scene may lower the value of the user or the default, e.g. of a limit or a buffer. The
+    /// The scene may lower the user's value or the default value, e.g. of a limit or a buffer. The
     /// smallest of the given numbers applies.
     Less,
-    /// The scene may raise the value of the user or the default, e.g. of a ramp.
+    /// The scene may raise the user's value or the default value, e.g. of a ramp.
     More,
     /// The scene may not change the value.
     Never,
@@ -146,7 +146,7 @@ pub enum SettingKind {
 }
 
 impl SettingKind {
-    /// Creates the kind of one of several values.
+    /// Creates the kind of a setting that has one of several values.
     pub fn choice(values: &[&str]) -> Self {
         Self::Choice { values: values.iter().map(ToString::to_string).collect() }
     }

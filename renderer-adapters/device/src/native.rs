@@ -2,7 +2,8 @@
 //! and checks the results.
 //!
 //! A native library runs with all the rights of this program, so the user decides which libraries
-//! to load. No library is ever unloaded, because open devices point into it.
+//! to load. No library is ever unloaded, because open devices contain pointers into their
+//! libraries.
 
 use std::fmt;
 use std::path::Path;
@@ -464,8 +465,8 @@ impl NativeOutput {
     /// library refuses a closed handle. An app drops the device instead.
     ///
     /// # Errors
-    /// Returns the error of the device. A second call must return the error that the handle is
-    /// unknown.
+    /// Returns the error that the device reports. A second call must return the error that the
+    /// handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         self.opened.close()
     }
@@ -569,8 +570,8 @@ impl NativeInput {
     /// library refuses a closed handle. An app drops the device instead.
     ///
     /// # Errors
-    /// Returns the error of the device. A second call must return the error that the handle is
-    /// unknown.
+    /// Returns the error that the device reports. A second call must return the error that the
+    /// handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         // Later reads must reach the library, because the library must refuse them.
         self.has_failed = false;

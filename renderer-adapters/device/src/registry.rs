@@ -31,8 +31,9 @@ pub struct Search {
     /// `~/.local/share`), and then in the folders of all users (`$XDG_DATA_DIRS`, else
     /// `/usr/local/share` and `/usr/share`).
     pub user_dir: bool,
-    /// Whether to read only the descriptors beside the libraries in folders. No library is loaded
-    /// then, and the devices found so can be listed, but not opened.
+    /// Whether to read only the descriptors beside the libraries in folders. In this case, the
+    /// search loads no library. The program can list the devices that the search finds, but cannot
+    /// open them.
     #[cfg(feature = "descriptions")]
     pub only_descriptors: bool,
 }
@@ -139,8 +140,8 @@ pub enum Note {
     /// A library file could not be loaded, or a folder could not be read, and the user did not name
     /// this file or folder explicitly.
     LeftOut { error: DeviceError },
-    /// A library in a folder that carries no descriptor, so that it cannot be listed without
-    /// running it.
+    /// A library in a folder has no descriptor, so the program cannot list its devices without
+    /// running the library.
     Undescribed { library: PathBuf },
 }
 

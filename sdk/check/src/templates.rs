@@ -1,7 +1,8 @@
 //! The project templates of `htex plugin new` and `htex device new`. The files of a template contain
 //! placeholders (`templates/README.md`), which [`Template::files`] fills in.
 
-/// A project in one language: a model or a device that builds and passes its checker.
+/// A template in one programming language, for a model or a device that builds and passes its
+/// checker.
 pub struct Template {
     /// Paths relative to the project's folder, and file contents.
     files: &'static [(&'static str, &'static str)],
@@ -127,8 +128,8 @@ impl Template {
 
     /// Returns the files of a project with this name: paths relative to the project's folder, and
     /// contents. The name has only lower-case letters, digits and hyphens. `sources` is the path
-    /// from the project to the sources of htex. With it, cargo takes the crates of htex from the
-    /// sources; otherwise from the registry.
+    /// from the project to the sources of htex. With this path, cargo takes the crates of htex from
+    /// the sources; without it, cargo takes them from the registry.
     pub fn files(&self, name: &str, sources: Option<&str>) -> Vec<(&'static str, String)> {
         let values = self.values(name, sources);
         let fill = |text: String, (key, value): &(&str, String)| text.replace(key, value);

@@ -65,7 +65,7 @@ pub enum LabError {
         /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
-    /// None of the takes that were tried kept to its target.
+    /// None of the attempted takes kept to its target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
         attempts: u32,
@@ -94,7 +94,7 @@ pub enum LabError {
     /// A value of the setup is out of range.
     #[error("{what} is {value}; {allowed}")]
     Setup { what: &'static str, value: String, allowed: &'static str },
-    /// A line of a tracker is not two numbers.
+    /// A line that a tracker sent does not consist of two numbers.
     #[error("tracker {name}, line {line}: {text:?} is not `x_mm y_mm` or `x_mm,y_mm`")]
     TrackerLine {
         name: String,
@@ -167,8 +167,8 @@ pub enum LabError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// The input and the output name the same column, or the map that assigns further columns names
-    /// an axis (x, y or z), which a response does not have.
+    /// The input and the output name the same column, or the map of further columns contains an
+    /// axis (x, y or z) of a texture's signal, which a response does not have.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.

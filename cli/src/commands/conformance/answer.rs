@@ -29,8 +29,8 @@ const MOST_SAMPLES: usize = 1 << 24;
 
 /// Answer for one conformance file, as a program that `htex conformance run` tests
 ///
-/// Prints what this program says about the file, in the JSON object that
-/// `spec/conformance-protocol.md` specifies. Compare it with the answer of your program.
+/// Prints this program's answer for the file, as the JSON object that
+/// `spec/conformance-protocol.md` specifies. Compare this answer with the answer of your program.
 #[derive(Args)]
 pub(crate) struct Answer {
     /// Kind of the file: assets, libraries, scenes, recordings, baked, playing
@@ -59,7 +59,7 @@ fn options(text: &str) -> Result<Asked, String> {
     serde_json::from_str(text).map_err(|error| error.to_string())
 }
 
-/// The arguments with which a recording is read.
+/// Arguments for reading a recording.
 #[derive(Parser)]
 #[command(no_binary_name = true)]
 struct Reading {

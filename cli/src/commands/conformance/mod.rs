@@ -10,9 +10,10 @@ use crate::failure::Result;
 
 /// Test third-party readers and players
 ///
-/// The specification comes with several hundred files, each with what a reader must find in it or a
-/// player must play from it. `htex conformance run` starts your program once for each file, and
-/// counts what it gets right. `spec/conformance-protocol.md` says what your program must print.
+/// The specification comes with several hundred test files. For each file, the specification states
+/// what a reader must find in it, or what a player must play from it. `htex conformance run` starts
+/// your program once for each file, and counts the correct answers. `spec/conformance-protocol.md`
+/// says what your program must print.
 #[derive(Args)]
 pub(crate) struct Conformance {
     #[command(subcommand)]

@@ -18,9 +18,9 @@ use crate::output::{print, print_json, tamed};
 /// HTEX_DEVICE_PATH, the user's folder, the folders of all users, the adapters built into this
 /// program. If two outputs or two inputs have the same id, htex uses only the first that it finds.
 ///
-/// The command loads no library in a folder: it reads the descriptors beside the libraries, which
-/// `htex plugin export` and `htex plugin install` write. Name a library with --device-file to see
-/// what is connected to it.
+/// The command does not load the libraries in folders. Instead, it reads the descriptor files
+/// beside these libraries, which `htex plugin export` and `htex plugin install` write. To list the
+/// connected devices of such a library, name the library with --device-file.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

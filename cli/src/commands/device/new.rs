@@ -4,8 +4,8 @@ use htex_check::templates;
 use crate::failure::Result;
 use crate::project::NewProject;
 
-/// Write a project for a new device. The project builds with one command, and its device, an output
-/// that writes the samples to a file, passes `htex device check`.
+/// Write a project for a new device. The project builds with one command. Its device is an output
+/// that writes the samples to a file, and passes `htex device check`.
 #[derive(Args)]
 pub(crate) struct New {
     #[command(flatten)]

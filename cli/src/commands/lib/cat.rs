@@ -9,7 +9,8 @@ use crate::located;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
-/// Extract one texture from a library. The .htex file is byte for byte the file that was packed.
+/// Extract one texture from a library. The extracted .htex file is identical, byte for byte, to the
+/// file that was packed.
 #[derive(Args)]
 pub(crate) struct Cat {
     /// Path or URI of the library

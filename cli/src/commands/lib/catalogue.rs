@@ -29,9 +29,9 @@ const MOST_LEFT_OUT: usize = 1000;
 /// Make a catalogue of a library: a web page on which people search, see and play its textures
 ///
 /// Writes the page (DIR/index.html), and the library beside it. Each texture has an address of its
-/// own. The page reads the library by ranges, so the web server must answer such requests, as
-/// nearly all do. A library of at most 2 MiB is also in the page itself, which then works from a
-/// disk, too.
+/// own. The page reads only the parts of the library that it needs (HTTP range requests). The web
+/// server must answer such requests, and nearly all web servers do. If the library has at most 2
+/// MiB, the page also contains the library, so the page works when you open it from a disk.
 ///
 /// `cargo xtask studio --out DIR` builds the page that this command fills in.
 #[derive(Args)]

@@ -21,8 +21,8 @@ use crate::progress::bar;
 /// Change a library: its textures, their metadata, and what it says about itself
 ///
 /// The command needs no recordings. It removes textures first, then renames and adds textures, and
-/// then changes metadata. All other textures stay the same, byte for byte. The result is the
-/// library that `htex lib pack` would write of the changed textures.
+/// then changes metadata. All other textures stay the same, byte for byte. `htex lib pack` would
+/// write the same library from the changed textures.
 ///
 /// GLOB is a name, or a pattern: `*` matches any text inside a part of a name, and `**` also matches
 /// across parts.
@@ -36,8 +36,8 @@ pub(crate) struct Edit {
     #[arg(short, long, value_name = "HTEXLIB", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
-    /// Add a texture, the textures of a folder, or those of a library (all, or LIBRARY#GLOB). May be
-    /// given several times
+    /// Add a texture, all textures of a folder, or textures of a library (all, or with LIBRARY#GLOB
+    /// only some). May be given several times
     #[arg(long, value_name = "FILE|DIR|LIBRARY", value_parser = located::FILES)]
     add: Vec<PathBuf>,
 
@@ -74,8 +74,8 @@ pub(crate) struct Edit {
     #[arg(long = "where", value_name = "FIELD=GLOB")]
     filters: Vec<Filter>,
 
-    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
-    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// Set the library's own metadata: version, description, authors, homepage, source, changelog
+    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

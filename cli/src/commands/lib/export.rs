@@ -22,9 +22,10 @@ const TABLE: &str = "exported.csv";
 
 /// Export the textures of a library to files of other haptic formats
 ///
-/// The command writes a file NAME.EXTENSION for each texture and each format into a folder, and a
-/// table exported.csv that says for each file what is lost. If a texture cannot be exported to a
-/// format, the table says why, and the exit status is 3, or 1 if no file was written.
+/// For each texture and each format, the command writes a file NAME.EXTENSION into a folder. It
+/// also writes a table exported.csv, which says for each file what is lost. If a texture cannot be
+/// exported to a format, the table says why. The exit status is then 3, or 1 if no file was
+/// written.
 #[derive(Args)]
 pub(crate) struct ExportAll {
     /// Path or URI of the library

@@ -16,9 +16,10 @@ use crate::recordings::RecordingArgs;
 
 /// Search a library: list the textures that match all given words and options
 ///
-/// With --like, the command lists the textures whose spectra are nearest, with the distance in
-/// decibels: the RMS difference of the levels at 48 frequencies from 20 to 1000 Hz, at the default
-/// condition of each texture. Spectra of different quantities are not compared.
+/// With --like, the command lists the textures whose spectra are most similar, with their distance
+/// in decibels. The distance is the RMS difference of the levels at 48 frequencies from 20 to 1000
+/// Hz, at the default condition of each texture. The command does not compare spectra of different
+/// quantities, such as force and acceleration.
 ///
 /// The command reads only the index of the library, and with --like and --duplicates also the
 /// spectra beside it.

@@ -8,9 +8,9 @@ use crate::output::note;
 /// List the textures of a library: name, size, recorded speeds and forces, law, models, tags.
 ///
 /// The law of a texture describes how the texture changes at speeds and forces that were not
-/// recorded. The command prints the law as three exponents, e.g. `f^1 v^0 F^1`: the exponent of f
-/// is for the frequencies as a function of speed, the exponent of v for the level as a function of
-/// speed, and the exponent of F for the level as a function of force.
+/// recorded. The command prints the law as three exponents, e.g. `f^1 v^0 F^1`. The exponent of f
+/// states how the frequencies depend on the speed, the exponent of v how the level depends on the
+/// speed, and the exponent of F how the level depends on the force.
 ///
 /// The command reads only the index of the library.
 #[derive(Args)]

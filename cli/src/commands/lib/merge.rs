@@ -15,12 +15,12 @@ use crate::outputs::check_outputs;
 
 /// Merge libraries into one, or the results of several builds
 ///
-/// All textures stay the same, byte for byte. The result is the library that `htex lib pack` would
-/// write of all their textures. Equal textures of one name are no conflict.
+/// All textures stay the same, byte for byte. `htex lib pack` would write the same library from all
+/// these textures. It is not a conflict if two libraries have the same texture under the same name.
 ///
-/// If you give folders that `htex build` wrote, the command merges them into a folder: their
-/// libraries, textures, sounds, reports and pages. Machines that each build a part of a library can
-/// make the whole library in this way.
+/// If you give folders that `htex build` wrote, the command writes a folder with the libraries,
+/// textures, sounds, reports and pages of all these folders, merged. In this way, several machines
+/// can each build a part of a library.
 #[derive(Args)]
 pub(crate) struct Merge {
     /// The libraries, or the folders of the builds
@@ -43,8 +43,8 @@ pub(crate) struct Merge {
     #[arg(long)]
     name: Option<String>,
 
-    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
-    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// Set the library's own metadata: version, description, authors, homepage, source, changelog
+    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

@@ -33,8 +33,8 @@ pub(crate) struct Pack {
     #[arg(value_name = "OUT.htexlib", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// Textures to pack, and folders and libraries whose textures to pack. LIBRARY#GLOB is part of a
-    /// library
+    /// Textures to pack, or folders and libraries that contain textures to pack. LIBRARY#GLOB is
+    /// part of a library
     #[arg(required = true, value_name = "FILE|DIR|LIBRARY", value_parser = located::FILES)]
     inputs: Vec<PathBuf>,
 
@@ -42,8 +42,8 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
-    /// Say what the library is: version, description, authors, homepage, source, changelog or date,
-    /// e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// Set the library's own metadata: version, description, authors, homepage, source, changelog
+    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

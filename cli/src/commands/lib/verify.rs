@@ -20,8 +20,8 @@ pub(crate) struct Verify {
     #[arg(required = true, value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 
-    /// BLAKE3 that the library must have, as `htex lib info` prints it. It comes from a place that
-    /// you trust, and shows that the library is the one that was published
+    /// Expected BLAKE3 hash of the library, as `htex lib info` prints it. It comes from a place
+    /// that you trust, and shows that the library is the one that was published
     #[arg(long, value_name = "HEX")]
     blake3: Option<String>,
 

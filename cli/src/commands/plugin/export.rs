@@ -13,8 +13,8 @@ use crate::output::{OutputFile, print, shown, write_file};
 ///
 /// Writes the descriptor into a custom section of a WASM module (`htex.descriptor`), or beside a
 /// native library (LIBRARY.descriptor.json). For this, the command loads the plugin once. Lists
-/// (`htex plugin list`, `htex device list`) then show the plugin without loading it. Sign a module
-/// after this, not before.
+/// (`htex plugin list`, `htex device list`) then show the plugin without loading it. If you sign a
+/// WASM module, sign it after this command, not before.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The plugin: a model or a device

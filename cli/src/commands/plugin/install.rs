@@ -20,9 +20,10 @@ use crate::plugin_registry::{Fetched, PluginRegistry};
 
 /// Install a model or a device in your own folder
 ///
-/// The command checks the hash and the signature, runs `htex plugin check` or `htex device check`
-/// in processes of their own, and compares a newer version of an installed model with the installed
-/// one. If anything is wrong, it installs nothing.
+/// The command checks the hash and the signature, and runs `htex plugin check` or `htex device
+/// check` in separate processes. If an older version of a model with the same major version is
+/// installed, the command also compares the new version with the older version. If anything is
+/// wrong, it installs nothing.
 ///
 /// A WASM module can do nothing outside its sandbox. A native library can do everything that you
 /// can, so the command asks before it runs one.

@@ -11,7 +11,8 @@ use crate::plugin_registry::PluginRegistry;
 /// Install newer versions of installed plugins from a registry
 ///
 /// For each plugin, the command installs the newest version with the same major version, as `htex
-/// plugin install` does. If it cannot install one, it still updates the others.
+/// plugin install` does. If the command cannot install a plugin, it still updates the other
+/// plugins.
 #[derive(Args)]
 pub(crate) struct Update {
     /// Ids of the plugins [default: all that are installed and in the registry]

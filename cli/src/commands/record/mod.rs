@@ -93,10 +93,10 @@ pub(crate) struct Record {
     tolerance: f64,
 
     /// Accept a take only if the finger slides on target for at least this fraction of the take.
-    /// The finger is on target if its force is within the tolerance, and its speed is between half
-    /// of the target speed and the upper limit of the tolerance. Without a target, htex counts all
-    /// sliding. No take reaches a fraction of 1, because the finger turns between sweeps. 0 turns
-    /// this test off
+    /// The finger is on target if its force is within the tolerance and its speed is in the allowed
+    /// range. This range goes from half of the target speed to the upper limit of the tolerance.
+    /// Without a target, htex counts all sliding. No take reaches a fraction of 1, because the
+    /// finger turns between sweeps. 0 turns this test off
     #[arg(long, value_name = "PART", default_value_t = Requirements::USUAL_ON_TARGET)]
     min_on_target: f64,
 

@@ -15,7 +15,7 @@ use crate::inputs::{InputArgs, paced};
 use crate::invocation::tool;
 use crate::output::warn;
 
-/// Options for the source of signals that records what participants feel.
+/// Options for the source that records what participants feel.
 #[derive(Args)]
 pub(super) struct FeltArgs {
     /// Record the signals at the finger during each trial from this source: analog inputs of a

@@ -18,9 +18,10 @@ use crate::recordings::RecordingArgs;
 #[derive(Args)]
 #[command(next_help_heading = "Spectra")]
 pub(super) struct SpectraArgs {
-    /// CSV file to write the table of spectra to. `htex study analyse` reads it with its own option
-    /// `--spectra`. For each participant, texture and model, the table contains the spectrum that the participant felt,
-    /// averaged over the trials. The table also contains the spectrum of each real texture
+    /// Write the table of spectra to this CSV file. `htex study analyse` reads it with its own
+    /// option `--spectra`. For each participant, texture and model, the table contains the spectrum
+    /// that the participant felt, averaged over the trials. The table also contains the spectrum of
+    /// each real texture
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 

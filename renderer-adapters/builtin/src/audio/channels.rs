@@ -1,5 +1,5 @@
-//! Sound cards whose channels play different signals. The devices of the module `channels` use
-//! them.
+//! Sound cards whose channels play different signals. The devices of the module `channels` use such
+//! cards.
 
 use htex_device::{Capabilities, DeviceError, Direction, Endpoint, Output, StreamFormat};
 

@@ -6,7 +6,7 @@
 //! linked, but loaded at run time.
 //!
 //! The voltage is limited in these ways:
-//! - A sample beyond `limit_v` is never output. The driver's own channel limits are set to the same
+//! - A sample beyond `limit_v` is never output. The driver's own channel limits have the same
 //!   value.
 //! - The output goes to zero before and after a stream, on every error, and when the device is
 //!   dropped. A thread of the device, the watchdog, detects an empty buffer even if the program has
@@ -15,9 +15,9 @@
 //! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output.
 //! - If a stream does not begin at zero, the adapter outputs a ramp of `ramp_ms` *before* the first
 //!   sample of the stream. If the stream does not end at zero, the adapter outputs such a ramp
-//!   *after* the last sample. The ramp is the mirrored stream, multiplied by a weight that falls to
-//!   zero away from the stream. Therefore, the ramp keeps the frequency of the carrier. The samples
-//!   of the stream are never changed.
+//!   *after* the last sample. The ramp is the stream mirrored in time, multiplied by a weight. The
+//!   weight falls to zero away from the stream. Therefore, the ramp keeps the frequency of the
+//!   carrier. The samples of the stream are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
 //! [`DaqInput`] records the analog inputs of a card, in volts.

@@ -1,7 +1,7 @@
 //! A device that writes a file. The samples are the mechanical quantity at the finger or the drive
 //! signal of a display. The format is WAV, CSV, NPY or raw samples.
 //!
-//! Samples are written as fast as they are generated, through a buffer of fixed size, into a
+//! The device writes samples as fast as they are generated, through a buffer of fixed size, into a
 //! temporary file next to the final file. Finishing the output renames the temporary file. An
 //! output that is dropped before it is finished leaves no file.
 //!

@@ -1,11 +1,11 @@
 //! Devices that cannot play samples: motors and interfaces that take a strength and a frequency
 //! about a hundred times per second.
 //!
-//! An adapter implements [`Motor`], and [`PacedOutput`] makes an open device from it. The device
-//! takes samples of sound and keeps them in a buffer. The device's own thread passes the samples to
-//! the motor in real time, in blocks. Each block comes with its level and mean frequency. Level and
-//! mean frequency are measured from the samples ([`htex_dsp::envelope`]), so a device needs no
-//! model.
+//! An adapter implements [`Motor`], and [`PacedOutput`] turns this implementation into an open
+//! device. The device takes samples of sound and keeps them in a buffer. The device's own thread
+//! passes the samples to the motor in real time, in blocks. Each block comes with its level and
+//! mean frequency. The device measures level and mean frequency from the samples
+//! ([`htex_dsp::envelope`]), so the device needs no model.
 //!
 //! The motor is at rest before the first block and after the last block. The thread also stops the
 //! motor after every error, when the device is dropped, and when samples come too late. The motor

@@ -3,8 +3,9 @@
 //! The adapter is not linked to an OpenXR library, but loads a runtime or the installed loader at
 //! run time. The setting `form` chooses what is played:
 //! - `form=points` plays `XR_EXT_haptic_parametric`. Each block of `block_ms` becomes a point with
-//!   the amplitude and the frequency at the end of the block ([`htex_dsp::reduced::Points`]).
-//!   Points are passed on in frames. A frame has the duration that the runtime prefers.
+//!   the amplitude and the frequency at the end of the block ([`htex_dsp::reduced::Points`]). The
+//!   adapter passes the points to the runtime in frames. A frame has the duration that the runtime
+//!   prefers.
 //! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the controller's sample rate.
 //! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept. The adapter
 //!   plays them through functions that the application exports.

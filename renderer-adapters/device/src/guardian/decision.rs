@@ -103,7 +103,7 @@ pub enum Action {
     GiveZero,
     /// Give the caller the error that the guardian failed and that the output may not be at zero.
     GiveNotZero,
-    /// Close the pipe to the guardian, which ends it.
+    /// Close the pipe to the guardian, so that the guardian ends.
     ClosePipe,
     /// Let the caller drop the device.
     LetGo,
@@ -120,7 +120,7 @@ pub enum Action {
     SayZero,
 }
 
-/// The reason why the player gave up the guardian.
+/// The reason why the player gave up on the guardian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Why {
     /// The guardian's pipe ended.
@@ -225,13 +225,13 @@ impl Player {
         self.state == State::Closed
     }
 
-    /// Returns the reason why the player gave up the guardian, or `None` if it did not.
+    /// Returns the reason why the player gave up on the guardian, or `None` if it did not give up.
     pub fn why(&self) -> Option<Why> {
         self.why
     }
 
-    /// Subtracts `by` from all times of the player. The model checker calls this function to keep
-    /// its clock at a fixed time, so that states that differ only in their time compare equal.
+    /// Subtracts `by` from all times of the player. The model checker calls this function so that
+    /// its clock stays at a fixed time. States that differ only in their time then compare equal.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {

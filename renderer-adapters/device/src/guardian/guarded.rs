@@ -43,11 +43,11 @@ pub fn not_started(error: impl Show) -> DeviceError {
 
 /// An output whose device is held by another process, the guardian.
 ///
-/// Each call waits at most buffer + ramp + 0.6 s for an answer of the guardian, where buffer and
-/// ramp are the durations of the device's buffer and ramp. There are two exceptions. Opening waits
-/// at most buffer + ramp + 10.5 s. A write may in addition take the timeout that the caller passed.
+/// Each call waits for an answer of the guardian for at most buffer + ramp + 0.6 s. Buffer and ramp
+/// are the durations of the device's buffer and ramp. There are two exceptions. Opening waits at
+/// most buffer + ramp + 10.5 s. A write may in addition take the timeout that the caller passed.
 ///
-/// If no answer comes in time, the guardian is killed, and a second process sets the output to
+/// If no answer comes in time, the app kills the guardian, and a second process sets the output to
 /// zero. If the second process does not confirm this within 0.5 s, the call returns an error, which
 /// states that the output may not be at zero. A thread then prints every second that the amplifier
 /// must be switched off, until the output is confirmed to be at zero

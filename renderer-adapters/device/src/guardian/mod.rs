@@ -9,7 +9,8 @@
 //! and the device then sets its output to zero by itself.
 //!
 //! If the guardian ends before the app, is stopped or hangs, the app kills it and starts a second
-//! helper process, which sets the output to zero. The module [`decision`] determines when and how.
+//! helper process, which sets the output to zero. The module [`decision`] determines when and how
+//! the app does this.
 //!
 //! An app opens a device as [`GuardedOutput`] if [`is_wanted`] returns true. The helper program is
 //! the command `htex guard` ([`htex`]), or a program of the app that calls [`hold`]. An app needs

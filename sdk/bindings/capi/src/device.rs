@@ -14,7 +14,7 @@ pub struct htex_device {
     pub id: u64,
 }
 
-/// What a device has done since it was opened. Set `size` to sizeof(htex_device_counts) before the
+/// Statistics of a device since it was opened. Set `size` to sizeof(htex_device_counts) before the
 /// call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]

@@ -1,4 +1,4 @@
-//! Messages for the user of a program: observations that make no call fail.
+//! Messages for the user of a program, about observations that do not make a call fail.
 
 use std::ffi::{CString, c_char, c_void};
 use std::sync::{PoisonError, RwLock};

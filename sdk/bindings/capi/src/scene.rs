@@ -115,7 +115,7 @@ pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) ->
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the position and motion of
 /// the finger. The call has an effect only if the scene's motion is `live`, which means that the
-/// program supplies it.
+/// program supplies the motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,

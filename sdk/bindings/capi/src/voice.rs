@@ -56,8 +56,8 @@ impl DerefMut for Playing {
     }
 }
 
-/// Level and mean frequency of what a voice played since the last htex_voice_envelope. Set `size`
-/// to sizeof(htex_envelope) before the call.
+/// Level and mean frequency of the samples that a voice played since the last call of
+/// htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_envelope {
@@ -157,8 +157,8 @@ pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) 
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
-/// Spectrum and level change gradually to the new motion. If the call fails, the voice continues to
-/// play the previous motion.
+/// The spectrum and the level change gradually until they match the new motion. If the call fails,
+/// the voice continues to play the previous motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_set_motion(
     voice: htex_voice,
@@ -206,11 +206,11 @@ pub unsafe extern "C" fn htex_voice_render_add(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Writes the level and mean
-/// frequency of what the voice played since the last call. Both are measured after the voice's
-/// effects, gain and limit. Use this call for phones, game controllers and motors that receive a
-/// level and a frequency instead of samples. `bands` receives the mean square of the samples in
-/// each of the voice's `envelope_bands`, in the asset's unit squared. `bands` may be NULL if
-/// `bands_len` is 0.
+/// frequency of the samples that the voice played since the last call. Both are measured after the
+/// voice's effects, gain and limit. Use this call for phones, game controllers and motors that
+/// receive a level and a frequency instead of samples. `bands` receives the mean square of the
+/// samples in each of the voice's `envelope_bands`, in the asset's unit squared. `bands` may be
+/// NULL if `bands_len` is 0.
 ///
 /// The level is exact. The mean frequency and the bands are computed from Hann windows of N
 /// samples, where N is the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A new

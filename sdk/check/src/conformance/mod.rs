@@ -130,7 +130,7 @@ pub enum ConformanceError {
     /// The command cannot be started with a file.
     #[error("the command `{command}` {problem}")]
     Command { command: String, problem: String },
-    /// The folder has no conformance files, or none of the requested part.
+    /// The folder has no conformance files, or no files of the requested part.
     #[error("{}: {problem}; give the folder `spec` of htex, or the one of a release", path.display())]
     Files { path: PathBuf, problem: String },
     /// A conformance file cannot be read, or the file with a question for the reader cannot be

@@ -148,7 +148,8 @@ impl Report {
         text
     }
 
-    /// Returns a badge as SVG. It shows how many tests passed, and is green if all did.
+    /// Returns a badge as SVG. The badge shows how many tests passed, and is green if all tests
+    /// passed.
     pub fn to_badge(&self) -> String {
         let count = self.total();
         let right = if self.passed { format!("{} passed", count.all) } else { count.to_string() };

@@ -44,13 +44,13 @@ impl Options {
 }
 
 /// Runs a reader on the conformance files. Calls `stop` every few milliseconds, and ends early if
-/// it returns true.
+/// `stop` returns true.
 ///
 /// Before this function returns, it kills all processes of the reader's process group.
 ///
 /// # Errors
-/// When the folder has no files, when a file cannot be read, when the reader cannot be started, or
-/// when the run was stopped.
+/// Returns an error if the folder has no files, if a file cannot be read, if the reader cannot be
+/// started, or if the run was stopped.
 pub fn run(
     line: &CommandLine,
     options: &Options,

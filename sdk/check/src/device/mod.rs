@@ -4,9 +4,9 @@
 //! [`CHECKS`] is the table of checks. Some checks apply only to outputs or only to inputs
 //! ([`checks_of`]). [`check`] runs the checks of one device, and [`run_one`] runs a single check in
 //! this process. The checks call a device in the same way as a scene or a recording does, through
-//! [`htex_device::Adapter`]. For a built-in device, checks of a library's exports are skipped. The
-//! checks drive an output at a hundredth of its limit. But some checks also pass samples beyond the
-//! limit to the device. Nobody may touch a device while the checks run.
+//! [`htex_device::Adapter`]. For a built-in device, the checker skips the checks of a library's
+//! exports. The checks drive an output at a hundredth of its limit. But some checks also pass
+//! samples beyond the limit to the device. Nobody may touch a device while the checks run.
 //!
 //! The faulty devices in `tests/bad-devices` test this checker.
 #![forbid(unsafe_code)]

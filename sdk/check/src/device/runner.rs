@@ -19,7 +19,7 @@ const DIRECTION: &str = "direction";
 /// The results of all checks of one device.
 pub type Report = harness::Report<DeviceName>;
 
-/// The device that was checked: the library's file, or an id.
+/// The device that was checked: the library's file, or the id of a built-in device.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeviceName {
     pub device: String,
@@ -32,8 +32,8 @@ impl Display for DeviceName {
 }
 
 /// Runs all checks of a device, each check in its own process. `runner` is a program that calls
-/// [`run_one`]. The program's arguments are the ones in `runner`, which name the device and its
-/// settings, and then the name of the check.
+/// [`run_one`]. The checker starts this program with the arguments in `runner`, which name the
+/// device and its settings. As the last argument, it appends the name of the check.
 pub fn check(device: &str, subject: &Subject, runner: &Runner) -> Report {
     let direction = match subject {
         Subject::Builtin(adapter) => Some(adapter.descriptor().direction),

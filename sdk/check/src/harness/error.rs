@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// The error when checks cannot be run, or when a model cannot be measured.
+/// The error if checks cannot run, or if the benchmark cannot measure a model.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckError {

@@ -23,7 +23,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// All outcomes, in the order of the counts in reports.
+    /// All outcomes, in the order in which reports list their counts.
     pub const ALL: [Self; 6] =
         [Self::Passed, Self::Warning, Self::Skipped, Self::Failed, Self::Crashed, Self::TimedOut];
 

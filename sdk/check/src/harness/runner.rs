@@ -22,8 +22,8 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// States that the error belongs to this check, and that the loading steps before this check
-    /// passed.
+    /// Names this check as the owner of the error, and states that the loading steps before this
+    /// check passed.
     pub fn reached(check: &'static str) -> Self {
         let reached = true;
         Self { check, reached }

@@ -9,17 +9,18 @@ use crate::harness::{CheckError, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::start::{Start, start};
 
-/// Block sizes that are timed, samples.
+/// Block sizes at which the benchmark measures times, samples.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];
 /// Number of rounds over all models and block sizes. The first is a warm-up and is not counted.
 const ROUNDS: usize = 64;
 /// Samples rendered per round, model and block size.
 const SAMPLES: usize = 8_192;
 
-/// One model, loaded in one way.
+/// A model to measure, and the way in which it was loaded.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The model's short name. Subjects with the same name are compared with the first one.
+    /// The model's short name. The benchmark compares subjects of the same name with the first of
+    /// them.
     pub model: String,
     /// How the model was loaded.
     pub way: String,
@@ -29,7 +30,7 @@ pub struct Subject {
 /// Minimum, median and spread of the times over the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
-    /// The fastest round, ns. This round is closest to the time without other load on the machine.
+    /// The fastest round, ns. Other load on the machine disturbed this round least.
     pub min_ns: f64,
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.

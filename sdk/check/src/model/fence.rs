@@ -1,5 +1,5 @@
-//! Arrays that are followed by guard values and, on 64-bit Linux, by a protected page. They detect
-//! that a call reads or writes beyond an array, so that the checker can name this call.
+//! Arrays that are followed by guard values and, on 64-bit Linux, by a protected page. With these
+//! arrays, the checker detects a call that reads or writes beyond an array, and names this call.
 
 use crate::harness::Finding;
 

@@ -12,13 +12,14 @@ use crate::model::table::CHECKS;
 
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. The program receives its own arguments, then the model's
-    /// file, the name of the check, and the option for the seed. If there is a second file to
-    /// compare with, the option for this file follows.
+    /// A program that calls [`run_one`]. The checker calls the program with the program's own
+    /// arguments, then the model's file, the name of the check, and the option for the seed. If
+    /// there is a second file to compare with, the option for this file follows.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
-    /// Names of the checks to run. The checks that they need also run. `None` runs all checks.
+    /// Names of the checks to run. The checks that these checks need also run. `None` runs all
+    /// checks.
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,

@@ -14,7 +14,7 @@ use crate::model::case::RATE_HZ;
 const COLD: usize = 3;
 const WARM: usize = 10;
 
-/// Times from a file to the first sample, milliseconds.
+/// Times from opening a module's file to its first sample, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Start {
     /// Time if the module must be compiled.

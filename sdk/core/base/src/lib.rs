@@ -20,8 +20,8 @@ pub mod storage;
 /// Jaro–Winkler similarity above which an unknown word counts as a misspelt known word.
 const SIMILAR: f64 = 0.8;
 
-/// Returns the known words that are most similar to a word that is not known, the most similar
-/// first. Returns at most `most` words, and only words that are similar enough to be meant.
+/// Returns the known words that are most similar to an unknown word, the most similar first.
+/// Returns at most `most` words, and only words so similar that the user may have meant them.
 ///
 /// ```
 /// assert_eq!(htex_base::similar("licence", ["license", "level"], 1), ["license"]);

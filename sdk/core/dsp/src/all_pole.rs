@@ -4,7 +4,7 @@
 //! The direct form computes four samples at a time. The lattice and the direct form give the same
 //! output, up to rounding, once the coefficients have been constant for as many samples as the
 //! lattice has stages. The lattice moves from one filter to another by interpolating their line
-//! spectral frequencies, because every filter in between is then stable.
+//! spectral frequencies. This keeps every filter in between stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -27,9 +27,9 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 /// While the coefficients are constant, the filter computes four samples at a time (transposed
 /// direct form II, the recursion unrolled for four samples). While the coefficients change, the
 /// filter runs as a lattice, which is stable if each reflection coefficient is inside (-1, 1). The
-/// switch from the lattice to the direct form is inaudible. It happens after at least as many
-/// samples with constant coefficients as the lattice has stages, when the state of the lattice
-/// depends only on its last outputs.
+/// switch from the lattice to the direct form is inaudible. The filter switches only after the
+/// coefficients have been constant for at least as many samples as the lattice has stages. The
+/// state of the lattice then depends only on its last outputs.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;

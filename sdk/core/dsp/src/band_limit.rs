@@ -1,4 +1,4 @@
-//! Steep filters that restrict noise to the band, if the noise is generated with a wider spectrum.
+//! Steep filters that restrict noise with a wider spectrum to the band.
 //!
 //! A filter changes the RMS by up to 2 %, because of its ripple, and because half of the bin at the
 //! Nyquist frequency is missing. So a model that uses these filters computes the level of its
@@ -28,15 +28,16 @@ const EDGE_POINTS: usize = 4;
 const BESIDE: f64 = 0.5;
 
 /// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. The filters are
-/// Chebyshev filters. Inside the band, at a distance of an eighth of the edge's frequency or more
-/// from each edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, the
-/// magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no filter. The output is
-/// delayed by some samples ([`Pipeline`]).
+/// Chebyshev filters. Inside the band, the magnitude is constant within 0.2 dB at all frequencies
+/// that are at least an eighth of the edge's frequency away from each edge. Half a grid bin outside
+/// each edge, the magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no filter.
+/// The output is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
 
-/// Returns a function of the frequency in hertz: the part of the power that [`band_limit`] passes.
+/// Returns a function that maps a frequency, in hertz, to the part of the power that [`band_limit`]
+/// passes.
 pub fn band_limit_power(band: Band, rate_hz: f64) -> impl Fn(f64) -> f64 {
     let sections = sections(band, rate_hz);
     move |hz| {
@@ -57,8 +58,8 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// A table that states, for each frequency, which part of a noise's power passes [`band_limit`] and
-/// is measured by the bins of the band. The table covers each grid bin in the band and some bins
+/// A table that states, for each frequency, the part of a noise's power that passes [`band_limit`]
+/// and that the bins of the band measure. The table covers each grid bin in the band and some bins
 /// outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only its
 /// part below that frequency counts.
 ///

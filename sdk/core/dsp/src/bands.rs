@@ -127,7 +127,7 @@ pub fn rms(values: &[f64]) -> f64 {
 /// than the other, its excess values are ignored.
 ///
 /// The result is never NaN for finite input. If either slice is constant, the correlation is
-/// undefined and the result is 0, except that two equal slices give 1.
+/// undefined. The result is then 1 if the slices are equal, and 0 otherwise.
 ///
 /// ```
 /// use htex_dsp::bands::pearson_correlation;

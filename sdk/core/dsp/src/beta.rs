@@ -34,9 +34,9 @@ impl LogAxis {
 
 /// Density of the beta distribution, `u^(α-1) (1-u)^(β-1) / B(α, β)`, 0 outside `[0, 1]`.
 ///
-/// At an edge the value is the limit: 0 if the parameter is above 1, finite if it is exactly 1, and
-/// +∞ if it is below 1. The relative error is about 1e-13 for parameters below 100, and 1e-8 at a
-/// million.
+/// At an edge, the value is the limit: 0 if the parameter for this edge (α at the lower edge, β at
+/// the upper edge) is above 1, finite if it is exactly 1, and +∞ if it is below 1. The relative
+/// error is about 1e-13 for parameters below 100, and 1e-8 at a million.
 ///
 /// ```
 /// use htex_dsp::beta::BetaDensity;
@@ -79,9 +79,9 @@ impl BetaDensity {
         libm::exp(left + right - self.log_scale)
     }
 
-    /// Writes the density at points that are given by finite `ln u` and `ln (1 - u)`, with the
-    /// accuracy of [`exponentials`](crate::exponential::exponentials). The shortest slice
-    /// determines the number of points.
+    /// Writes the density at points for which the caller passes `ln u` and `ln (1 - u)`, both
+    /// finite, with the accuracy of [`exponentials`](crate::exponential::exponentials). The
+    /// shortest slice determines the number of points.
     pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
         let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
         for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {

@@ -51,8 +51,9 @@ pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::HighPass, order, fc_hz, rate_hz)
 }
 
-/// Returns the magnitude `|H|` of the analogue low-pass of any positive order, at `ratio` times its
-/// cut-off: `1 / sqrt(1 + ratio^(2 order))`. The high-pass has this magnitude at `1 / ratio`.
+/// Returns the magnitude `|H|` of an analogue low-pass of any positive order, at the frequency
+/// `ratio` times its cut-off: `1 / sqrt(1 + ratio^(2 order))`. An analogue high-pass has this
+/// magnitude at the frequency `1 / ratio` times its cut-off.
 ///
 /// ```
 /// use htex_dsp::butterworth::analog_low_pass_magnitude;

@@ -1,10 +1,10 @@
 //! Fits the parameters of a spectrum's shape to band levels in decibels.
 //!
-//! The levels are the energies in 30 triangular bands from edge to edge of the frequency band, on
-//! the axis [`edge_to_edge`]: the bands of the model Bands at its defaults. Fits to third octaves
-//! would have a smaller third-octave error. But the project compares all models by this error, so
-//! no model is fitted to third octaves. Only the shape counts: the energies of spectrum and model
-//! are relative to their sums.
+//! The levels are the energies in 30 triangular bands, which cover the frequency band on the axis
+//! [`edge_to_edge`]. The model Bands uses the same bands by default. Fits to third octaves would
+//! have a smaller third-octave error. But the project compares all models by this error, so no
+//! model is fitted to third octaves. Only the shape counts, because the energies of the spectrum
+//! and of the model are each divided by their sum.
 //!
 //! The search is the Levenberg–Marquardt method. It computes derivatives by differences, so a model
 //! has to provide only its power.
@@ -76,9 +76,9 @@ impl DecibelFit {
         levels
     }
 
-    /// Moves the parameters to the nearest minimum of the sum of squared differences. `shape` writes
-    /// the power spectrum of given parameters, in any scale. The parameters stay at the start if
-    /// the start has no power, or if its power is not finite.
+    /// Moves the parameters to the nearest minimum of the sum of squared differences. `shape`
+    /// writes the power spectrum for a set of parameters, in any scale. The parameters keep their
+    /// start values if the spectrum at the start has no power, or if its power is not finite.
     pub fn run(&self, parameters: &mut [f64], mut shape: impl FnMut(&[f64], &mut [f64])) {
         let mut power = alloc::vec![0.0; self.bank.columns()];
         let mut best = self.trial(parameters.to_vec(), &mut power, &mut shape);

@@ -99,10 +99,11 @@ impl BurgErrors {
     }
 }
 
-/// Covariance estimate: least squares of the forward error, over the samples whose predecessors are
-/// all in the segment. The estimate is exact for noiseless resonances, but may be unstable. An
-/// unstable estimate is made stable with [`stabilize`], and `adjusted` is then set in the result.
-/// `error` is the residual power per predicted sample before this correction.
+/// Covariance estimate: least squares of the forward error, over all samples that have `order`
+/// predecessors in their segment. The estimate is exact for noiseless resonances, but may be
+/// unstable. The function makes an unstable estimate stable with [`stabilize`], and then sets
+/// `adjusted` in the result. `error` is the residual power per predicted sample before this
+/// correction.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let long: Vec<&[f64]> = segments.iter().copied().filter(|s| s.len() > order).collect();
     let count: usize = long.iter().map(|s| s.len() - order).sum();

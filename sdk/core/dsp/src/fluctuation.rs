@@ -1,4 +1,4 @@
-//! How a signal fluctuates in time: what a spectrum does not show.
+//! How a signal fluctuates in time, which its spectrum does not show.
 //!
 //! Stationary noise with the spectrum of a recording plays the recording's average power in every
 //! band. A recording also becomes stronger and weaker, several times a second and in many bands
@@ -61,9 +61,9 @@ impl Fluctuation {
     ///
     /// For each third octave from 20 Hz, a sharp filter in the FFT of the whole signal gives the
     /// band's analytic signal. The squared magnitude of this signal is the power envelope. The
-    /// envelope is divided by its mean, the mean is subtracted, and a Hann window over the whole
-    /// length is applied. The power spectrum of the result is averaged over the bins of each octave
-    /// of modulation.
+    /// function divides the envelope by its mean, subtracts the mean, and applies a Hann window
+    /// over the whole length. It averages the power spectrum of the result over the bins of each
+    /// octave of modulation.
     ///
     /// `None` if the signal is shorter than [`LEAST_S`], silent, or not finite, or if half its
     /// sample rate is below 128 Hz.
@@ -156,11 +156,11 @@ pub struct EnvelopeExcess {
 /// Bands above half the sample rate are `None`. If a signal is longer than [`MOST_S`], only its
 /// middle is measured.
 ///
-/// The expectation is exact for Gaussian noise that is periodic in the length of the signal. If ρ
-/// is the correlation of the band's analytic signal with itself at a delay, the envelopes at that
-/// delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of their mean (D.
-/// Middleton, 1948). So the expectation is computed from a formula, and not from random signals
-/// with the same spectrum.
+/// The expected variance is exact for Gaussian noise that is periodic in the length of the signal.
+/// Let ρ be the correlation of the band's analytic signal with itself at a delay. Then the envelope
+/// and its copy at that delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the
+/// square of their mean (D. Middleton, 1948). So the function computes the expected variance from a
+/// formula, and not from random signals with the same spectrum.
 ///
 /// `None` if the signal is shorter than 1 s, silent, or not finite, or if half its
 /// sample rate is below 128 Hz.

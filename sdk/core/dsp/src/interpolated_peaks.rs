@@ -1,6 +1,6 @@
 //! Finds the peaks of a spectrum between its bins. From each local maximum and its larger
-//! neighbour, this module computes the frequency and amplitude of a sinusoid. A periodic Hann
-//! window would measure exactly these two bins from this sinusoid.
+//! neighbour, this module computes the frequency and amplitude of a sinusoid. Measured through a
+//! periodic Hann window, this sinusoid would have exactly the magnitudes of these two bins.
 //!
 //! If the sinusoid is `d` bins from the maximum, the larger neighbour is `(1 + d) / (2 - d)` times
 //! as high as the maximum. Magnitudes averaged over segments keep this ratio. The table compares

@@ -3,9 +3,9 @@
 //!
 //! A WASM module checks its time limit at the start of every iteration of a loop. At each check,
 //! the values that one iteration passes to the next are stored in memory and loaded again. To avoid
-//! this, the code of the lattice exists for a few fixed lengths. It has no inner loop over the
-//! stages, so all state stays in registers. [`crate::biquad`] and [`crate::sine_bank`] are unrolled
-//! for the same reason.
+//! these memory accesses, the crate contains the code of the lattice for a few fixed lengths. This
+//! code has no inner loop over the stages, so all state stays in registers. [`crate::biquad`] and
+//! [`crate::sine_bank`] are unrolled for the same reason.
 
 use alloc::vec::Vec;
 

@@ -22,8 +22,9 @@ const NEAR: f64 = 4.0 * f64::EPSILON;
 ///
 /// The lattice of the model contains an all-pass filter. The line spectral frequencies are the
 /// angles at which the phase of this filter is a multiple of π. The phase decreases monotonically,
-/// from 0 at ω = 0 to -(p + 1)π at ω = π. It is computed as a sum over the reflection coefficients,
-/// without an ambiguity of 2π. So Newton's method inside a bracket finds each angle, at any order.
+/// from 0 at ω = 0 to -(p + 1)π at ω = π. The phase is computed as a sum over the reflection
+/// coefficients, so it has no ambiguity of 2π. So Newton's method inside a bracket finds each
+/// angle, at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -91,8 +92,8 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Converts line spectral frequencies, in radians, to prediction coefficients. A stable model
-/// requires that they are strictly ascending inside (0, π). Returns `None` if they are not, or if
+/// Converts line spectral frequencies, in radians, to prediction coefficients. For a stable model,
+/// the frequencies must be strictly ascending inside (0, π). Returns `None` if they are not, or if
 /// there are more than [`MOST_LINES`] frequencies.
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];

@@ -167,8 +167,8 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
 }
 
 /// Makes an unstable model stable by scaling its poles: the result is `A_i g^i`. The factor g moves
-/// the outermost pole to its mirror image in the unit circle, where its magnitude peak is the same.
-/// A stable model is returned unchanged. If a coefficient is not finite, all coefficients of the
+/// the outermost pole to its mirror image in the unit circle, which has the same magnitude peak. A
+/// stable model is returned unchanged. If a coefficient is not finite, all coefficients of the
 /// result are zero.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
@@ -190,8 +190,8 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
 
 /// Limits the radius of every pole to `radius` (below 1). If a pole lies farther out, the result is
 /// `A_i g^i`, where the factor g moves the outermost pole to `radius`. This function also corrects
-/// poles that lie outside the unit circle because the coefficients were rounded. If a coefficient
-/// is not finite, all coefficients of the result are zero.
+/// a model whose poles lie outside the unit circle because its coefficients were rounded. If a
+/// coefficient is not finite, all coefficients of the result are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;

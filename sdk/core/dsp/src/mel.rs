@@ -54,8 +54,8 @@ impl MelBank {
         &self.bank
     }
 
-    /// Returns the energy of a power spectrum in each band, in the unit of the power. `power` is
-    /// given at the bank's frequencies.
+    /// Returns the energy of a power spectrum in each band, in the unit of the power. `power`
+    /// contains the values of the spectrum at the bank's frequencies.
     pub fn energies(&self, power: &[f64]) -> Vec<f64> {
         let mut energies = alloc::vec![0.0; self.bank.rows()];
         self.bank.apply(power, &mut energies);
@@ -69,8 +69,8 @@ impl MelBank {
     /// apex it is constant. Empty filters are skipped. `power` has as many elements as the bank has
     /// frequencies.
     ///
-    /// The result is smoother than the result of the pseudo-inverse, and never negative. But if
-    /// [`Self::energies`] is applied to the result, the energies differ slightly from the given
+    /// The result is smoother than the result of the pseudo-inverse, and never negative. But
+    /// [`Self::energies`] of the result returns energies that differ slightly from the original
     /// energies.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self

@@ -7,11 +7,11 @@
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Tolerance of the position. The search stops when no vertex is farther than this from the
-    /// best vertex along any axis, provided that `f_tolerance` is also met.
+    /// Tolerance of the position. The search stops when every vertex is within this distance of the
+    /// best vertex along every axis, provided that `f_tolerance` is also met.
     pub x_tolerance: f64,
-    /// Tolerance of the function value. The search stops when the value of no vertex exceeds the
-    /// best value by more than this, provided that `x_tolerance` is also met.
+    /// Tolerance of the function value. The search stops when the value at every vertex is at most
+    /// this much above the best value, provided that `x_tolerance` is also met.
     pub f_tolerance: f64,
     /// Maximum number of function calls.
     pub max_evaluations: usize,

@@ -22,10 +22,10 @@ const FLAT: f64 = 1e-9;
 /// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular
 /// filters and energies `e`. The solution is unique.
 ///
-/// The solution has the form `p = max(0, Wᵀ s)`, with one number `s` per filter, where `s` solves
-/// `RIDGE s + W max(0, Wᵀ s) = e`. This equation is piecewise linear, so Newton's method is exact
-/// on each piece. The matrix of Newton's method is tridiagonal, because only neighbouring filters
-/// overlap.
+/// The solution has the form `p = max(0, Wᵀ s)`. The vector `s` contains one number per filter and
+/// solves `RIDGE s + W max(0, Wᵀ s) = e`. This equation is piecewise linear, so Newton's method is
+/// exact on each piece. The matrix of Newton's method is tridiagonal, because only neighbouring
+/// filters overlap.
 ///
 /// ```
 /// use htex_dsp::non_negative::{NonNegative, Scratch};

@@ -5,8 +5,8 @@ use core::cmp::Ordering;
 
 use alloc::vec::Vec;
 
-/// Returns the indices below `len`, sorted by a comparison of the items with these indices. Equal
-/// items keep their order.
+/// Returns the indices below `len`, sorted by a comparison of the items that the indices refer to.
+/// Equal items keep their order.
 ///
 /// ```
 /// let names = ["cork", "ash", "birch"];

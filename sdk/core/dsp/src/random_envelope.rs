@@ -1,9 +1,9 @@
 //! A random envelope, which makes stationary noise fluctuate as a recording does.
 //!
 //! The envelope is `exp(x)`, where x is Gaussian noise with the frequencies 0.5 to 32 Hz. Two
-//! standard deviations say how strong the slow part (0.5 to 8 Hz) and the fast part (8 to 32 Hz) of
-//! x are. The mean square of the envelope is 1. So the envelope does not change the level, or the
-//! power in a band that is wider than the frequencies of the envelope.
+//! standard deviations set how strong the slow part (0.5 to 8 Hz) and the fast part (8 to 32 Hz) of
+//! x are. The mean square of the envelope is 1. So the envelope changes neither the level of the
+//! noise nor the power in a band that is wider than the range of the envelope's frequencies.
 //!
 //! At every sample rate, the envelope is computed 500 times a second, and interpolated linearly
 //! between these times. Therefore it costs little, and is the same function of time at every rate.
@@ -59,9 +59,9 @@ struct Part {
 }
 
 impl RandomEnvelope {
-    /// Makes an envelope for samples at `rate_hz`. `strength_db` gives the standard deviations of
-    /// the slow and the fast part of its logarithm, decibels. Values above 12 are reduced to 12. A
-    /// rate that is not positive counts as 500 Hz.
+    /// Makes an envelope for samples at `rate_hz`. `strength_db` contains the standard deviations
+    /// of the slow and of the fast part of the envelope's logarithm, decibels. Values above 12 are
+    /// reduced to 12. A rate that is not positive counts as 500 Hz.
     pub fn new(strength_db: [f64; 2], rate_hz: f64, seed: u64) -> Self {
         // Not `clamp`, which would keep NaN.
         #[allow(clippy::manual_clamp)]

@@ -7,7 +7,7 @@
 //!
 //! Textures have no content above 1 kHz, so voices generate noise at 2 to 4 kHz. A voice then
 //! generates five to eight times fewer samples than at the rate of the device. In addition, the
-//! converter's filter is the steep filter that ends the noise at the top of the band.
+//! converter's filter serves as the steep filter that removes noise above the band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -155,10 +155,10 @@ pub struct Part {
     pub macs: f64,
 }
 
-/// The amplitude that a conversion to a high rate passes at each frequency. It is needed for a
-/// source with a fixed rate, if the source's frequencies extend into the transition band around
-/// half of this rate. In the middle of the transition band, half the amplitude passes, and an image
-/// with the same amplitude appears.
+/// The amplitude that a conversion to a high rate passes at each frequency. A program needs this
+/// amplitude for a source with a fixed rate whose frequencies extend into the transition band
+/// around half of this rate. In the middle of the transition band, half the amplitude passes, and
+/// an image with the same amplitude appears.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,

@@ -29,7 +29,7 @@ impl Loop {
     /// end of `samples` into the start, so the loop is shorter than `samples` by `fade`.
     ///
     /// The gains of the cross-fade are a sine and a cosine. Both are divided by the square root of
-    /// the power that the sum of the two pieces would otherwise have, which depends on the
+    /// the power that the sum of the two pieces would otherwise have. This power depends on the
     /// correlation of the pieces. Noise keeps its power, and a sound that repeats with the period
     /// of the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {

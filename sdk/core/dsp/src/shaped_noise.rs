@@ -3,13 +3,13 @@
 //! Each frame is an inverse FFT with uniformly random phases. Neighbouring frames overlap by an
 //! eighth: one fades out while the next fades in. Frames are independent and the squares of the two
 //! fade weights add up to 1, so the power is the same at every sample. The components of a frame
-//! repeat only after the length of the frame, so no part of a frame is a repetition (numeric
-//! definitions of the specification: random phase).
+//! repeat only after the length of the frame, so no part of a frame repeats an earlier part (see
+//! random phase in the numeric definitions of the specification).
 //!
 //! When the spectrum changes (a retune), the current frame is computed again with the same phases
 //! and the new spectrum. Over 10 ms, the output cross-fades to the new frame. Parameters that
-//! arrive during a cross-fade wait until the cross-fade ends. Then only the last of them are
-//! converted to a spectrum. In this way a retune computes one frame instead of two. Frames have
+//! arrive during a cross-fade wait until the cross-fade ends. Then only the most recent parameters
+//! are converted to a spectrum. In this way a retune computes one frame instead of two. Frames have
 //! single precision, like the output.
 
 use alloc::sync::Arc;
@@ -105,9 +105,9 @@ enum Pending {
 }
 
 /// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
-/// `wanted_hz`. The result is `wanted_hz` divided by an integer. It is the lowest such rate at
-/// which the band lies below half the rate and leaves a wide transition band for the interpolation
-/// to `wanted_hz`.
+/// `wanted_hz`. The result is `wanted_hz` divided by an integer. It is the lowest such rate whose
+/// half lies far enough above the band for a wide transition band in the interpolation to
+/// `wanted_hz`.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     // The first image then begins at 2.7 times the upper edge, so a single short filter separates
     // it (see `specs` in `resample.rs`).

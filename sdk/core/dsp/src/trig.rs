@@ -8,8 +8,8 @@
 
 use crate::wide::{Work, wide};
 
-/// Angle, radians, up to which the results have the same bits as the results of `libm`. Above this
-/// angle the error grows with the angle.
+/// Largest angle, radians, for which the results have the same bits as the results of `libm`. Above
+/// this angle the error grows with the angle.
 pub const LARGEST: f64 = 1_647_099.0;
 
 /// Sine of an angle in radians; NaN if the angle is not finite.

@@ -4,8 +4,8 @@
 //! of one phase are side by side in a vector register. So no sum runs across the lanes of a
 //! register, and the output does not depend on the block sizes.
 //!
-//! Source samples are pulled in multiples of eight. Therefore the source sample at which a voice
-//! retunes does not depend on the conversion stages that follow the voice.
+//! The converter pulls source samples in multiples of eight. Therefore the source sample at which a
+//! voice retunes does not depend on the conversion stages that follow the voice.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

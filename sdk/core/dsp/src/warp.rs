@@ -1,7 +1,7 @@
 //! Reads a stream of samples faster or slower, at a ratio that may change at any sample.
 //!
 //! A player reads a texture faster or slower when the motion differs from the motion for which the
-//! voice was created. As long as the motion does not differ, the ratio is 1, and samples pass
+//! voice was created. As long as the two motions are the same, the ratio is 1, and samples pass
 //! through this reader unchanged and at no cost ([`Warp::when_needed`]). The interpolation also
 //! needs samples after the current position. This causes no delay, because the reader pulls these
 //! samples from its source in advance. The interpolation kernel has 8 to 32 taps, as many as are
@@ -56,8 +56,8 @@ pub struct Warp {
 }
 
 impl Warp {
-    /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change
-    /// of the ratio takes effect after half a kernel (4 to 16 source samples).
+    /// Makes a reader for a source without content above `top` (0 to 0.5) times the source's rate.
+    /// A change of the ratio takes effect after half a kernel (4 to 16 source samples).
     pub fn new(top: f64) -> Self {
         Self::with_taps(taps(top), PHASE_BITS)
     }

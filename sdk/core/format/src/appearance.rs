@@ -58,8 +58,8 @@ pub enum Pattern {
 }
 
 impl Appearance {
-    /// Returns the appearance that an asset states. Returns `None` if the asset states none, or one
-    /// that breaks the extension's schema.
+    /// Returns the appearance that an asset states. Returns `None` if the asset states no
+    /// appearance, or an appearance that breaks the extension's schema.
     pub fn of(manifest: &Manifest) -> Option<Self> {
         let look: Self =
             serde_json::from_value(manifest.extensions.get(APPEARANCE)?.clone()).ok()?;

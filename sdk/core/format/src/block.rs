@@ -1,10 +1,11 @@
 //! Encoder and decoder of parameter blocks.
 //!
-//! For each condition, a block contains the stored values of each field. Values are in
-//! little-endian order and have a fixed width, except in packed lists. The length of a list is a
-//! variable-length integer of bincode, which precedes the values of the list. After that, the block
-//! contains the coded fields of all conditions, as one code (`coded.rs`). The layout depends only
-//! on the fields in the manifest. This is the only module that uses bincode.
+//! For each condition, a block contains the stored values of each field that is not coded. Values
+//! are in little-endian order and have a fixed width, except in packed lists. The length of a list
+//! is a variable-length integer of bincode, which precedes the values of the list. After the values
+//! of all conditions, the block contains the coded fields of all conditions together, as one code
+//! (`coded.rs`). The layout depends only on the fields in the manifest. This is the only module
+//! that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};

@@ -1,5 +1,5 @@
-//! Coded fields. Each step is predicted from the previous condition and from the previous numbers,
-//! and the errors of the prediction are stored in a range code with adaptive probabilities.
+//! Coded fields. The encoder predicts each step from the previous condition and from the previous
+//! numbers, and stores the errors of the predictions in a range code with adaptive probabilities.
 //!
 //! In a grid of 405 conditions of the model Bands, a condition takes 9.7 bytes if it is coded, and
 //! 20.1 bytes if it is packed. The measurements are in `docs/accuracy-and-time.md`.

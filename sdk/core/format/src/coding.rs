@@ -19,7 +19,7 @@ impl Manifest {
 
 impl Asset {
     /// Returns the asset in the coded form. Its parameters, and the samples that it plays, stay the
-    /// same. If there are several conditions, its file is usually much smaller.
+    /// same. Its file is usually much smaller if the asset has several conditions.
     #[must_use]
     pub fn coded(mut self) -> Self {
         if !self.manifest.is_coded() {

@@ -44,8 +44,9 @@ impl Asset {
         }
     }
 
-    /// Reads an asset from a file, within the default [`Limits`]. With the feature `library`,
-    /// `cloth.htexlib#woven/cotton` is the texture `woven/cotton` of the library `cloth.htexlib`.
+    /// Reads an asset from a file, within the default [`Limits`]. With the feature `library`, the
+    /// path `cloth.htexlib#woven/cotton` names the texture `woven/cotton` in the library
+    /// `cloth.htexlib`.
     ///
     /// # Errors
     /// Returns [`ReadError::Io`] if the file cannot be read or the library has no such texture, and
@@ -62,8 +63,8 @@ impl Asset {
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
     }
 
-    /// Returns the file that [`Self::open`] reads: the path itself, or the library of
-    /// `cloth.htexlib#oak`.
+    /// Returns the file that [`Self::open`] reads: the path itself, or the library's file for a
+    /// path such as `cloth.htexlib#oak`.
     pub fn file_of(path: &Path) -> &Path {
         in_library(path).map_or(path, |(library, _)| library)
     }

@@ -15,7 +15,7 @@ pub struct Document {
     pub text: &'static str,
     /// Name of the file in messages, such as `manifest.json`.
     pub file: &'static str,
-    /// Name, in messages, of the thing to which the version belongs, such as `asset`.
+    /// Name of the versioned thing in messages, such as `asset`.
     pub thing: &'static str,
     /// The key whose value is the version.
     pub version_key: &'static str,
@@ -59,9 +59,9 @@ pub struct VersionedJson {
 }
 
 impl Document {
-    /// Parses a JSON text whose nesting depth is at most `max_depth`, and which has at most
-    /// `max_nodes` opening brackets and commas. If the text is not valid, adds a finding that says
-    /// why, and returns `None`.
+    /// Parses a JSON text with a nesting depth of at most `max_depth`, and with at most `max_nodes`
+    /// opening brackets and commas. If the text is not valid, adds a finding that says why, and
+    /// returns `None`.
     pub fn open(
         &self,
         bytes: &[u8],

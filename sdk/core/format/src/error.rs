@@ -91,13 +91,13 @@ pub enum WriteError {
     },
 }
 
-/// Error for a text of the manifest, such as a licence, whose form is invalid.
+/// Error for a malformed text in the manifest, such as a licence.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataError {
-    /// The id of a licence is not in the SPDX list that this version contains. The id may be in a
-    /// newer list.
+    /// The SPDX list in this version of htex does not contain the id of a licence. The id may be in
+    /// a newer list.
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]
@@ -110,7 +110,7 @@ pub enum MetadataError {
         "{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/"
     )]
     Doi { doi: String },
-    /// The name of an extension has another form than `com.vendor.NAME/REVISION`.
+    /// The name of an extension does not have the form `com.vendor.NAME/REVISION`.
     #[error("{name:?} is not of the form com.vendor.NAME/REVISION")]
     ExtensionName { name: String },
 }

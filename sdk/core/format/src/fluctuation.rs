@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// The fluctuation of a texture: the strength of one random envelope that multiplies all bands.
 ///
 /// Noise with a recorded spectrum is equally strong at all times, but a recording is not. A player
-/// can multiply the noise by an envelope `exp(x)` with the mean square 1, where x is Gaussian noise.
-/// The two numbers are the standard deviations of the slow and the fast part of x, in steps of 1/32
-/// dB. The texture's spectrum and level stay as they are.
+/// can multiply the noise by an envelope `exp(x)` with the mean square 1, where x is Gaussian
+/// noise. The two fields contain the standard deviations of the slow and the fast part of x, in
+/// steps of 1/32 dB. The texture's spectrum and level stay as they are.
 ///
 /// ```
 /// use htex_format::Fluctuation;

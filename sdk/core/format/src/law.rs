@@ -99,7 +99,8 @@ pub struct Exponent {
     pub exponent: f64,
     /// Source of the exponent.
     pub source: ExponentSource,
-    /// The measured value. `exponent` is a weighted mean of this value and the assumed exponent.
+    /// The measured value. `exponent` is usually a weighted mean of this value and the assumed
+    /// exponent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<f64>,
     /// Standard error of `estimate`, not negative.
@@ -154,8 +155,8 @@ impl Exponent {
     ///
     /// The result is the weighted mean of the measurement and the assumed exponent, limited to
     /// `bounds`. The weight of the measurement is the inverse square of its standard error. The
-    /// weight of the assumed exponent is the inverse square of `spread`, which is the standard
-    /// deviation between surfaces. If the measurement has less than a tenth of the total weight,
+    /// weight of the assumed exponent is the inverse square of `spread`, the standard deviation of
+    /// the exponent between surfaces. If the measurement has less than a tenth of the total weight,
     /// the result is the assumed exponent.
     ///
     /// ```
@@ -222,9 +223,10 @@ impl Law {
     /// This is also the law of an asset that does not state a law. New assets state
     /// [`Self::for_new_assets`].
     ///
-    /// The assumed exponents of the level depend on the frequency exponent a. Here a is 1, as for a
-    /// relief, or 0, as for a surface whose frequencies do not change with the speed.
-    /// [`Self::reassumed`] interpolates between these two cases if a was measured or given.
+    /// The assumed exponents of the level depend on the frequency exponent a. In this law, a is 1
+    /// (as for a relief) or 0 (as for a surface whose frequencies do not change with the speed).
+    /// [`Self::reassumed`] interpolates between these two cases if a was measured or the user gave
+    /// it.
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
         let a = match contact {
             Contact::Finger => 1.0,
@@ -241,22 +243,24 @@ impl Law {
     /// Returns the law that a new asset states if nothing was measured. It is [`Self::assumed`]
     /// except for the exponent of the force, which is 0 for a tool and 0.25 for an unknown contact.
     ///
-    /// On 20 materials of the Penn Haptic Texture Toolkit, the exponent of a tool's level is 0.03
-    /// (median; quartiles 0.01 and 0.05). Three fingers gave -0.07, 1.18 and 2.58. For an unknown
-    /// contact, 0.25 is a weighted mean of 0 for a tool (weight 3) and 1 for a finger (weight 1),
-    /// because the large public collections were recorded with tools.
+    /// On 20 materials of the Penn Haptic Texture Toolkit, the force exponent of the level is 0.03
+    /// for a tool (median; quartiles 0.01 and 0.05). Three fingers gave -0.07, 1.18 and 2.58. For
+    /// an unknown contact, 0.25 is a weighted mean of 0 for a tool (weight 3) and 1 for a finger
+    /// (weight 1). Tools have the larger weight because the large public collections were recorded
+    /// with tools.
     #[must_use]
     pub fn for_new_assets(quantity: Quantity, contact: Contact) -> Self {
         Self::assumed(quantity, contact).reassumed(quantity, contact)
     }
 
-    /// Returns this law for a new asset, or for another quantity or contact. An assumed exponent is
-    /// replaced by the exponent of [`Self::for_new_assets`], a measured exponent is averaged with
-    /// this exponent, and a given exponent does not change.
+    /// Returns this law for a new asset, or for another quantity or contact. The function replaces
+    /// an assumed exponent with the exponent of [`Self::for_new_assets`], and averages a measured
+    /// exponent with that exponent. It does not change an exponent that the user gave.
     ///
     /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
-    /// contact. But if this exponent was measured, a measured exponent of the level over the speed
-    /// is used as it is, because the assumption for it could be far from the truth.
+    /// contact. But if the frequency exponent was measured, the function uses a measured speed
+    /// exponent of the level without averaging it, because the assumed exponent could be far from
+    /// the truth.
     ///
     /// If the frequency exponent is 1, so that the frequencies scale with the speed, the level gets
     /// the exponents of a relief. If this exponent is 0, the level gets the exponents of a surface

@@ -25,8 +25,8 @@ pub struct Limits {
     /// Size of the manifest as JSON: 1,000,000 opening brackets and commas outside strings. A
     /// manifest has at most one value more than it has opening brackets and commas.
     pub json_nodes: usize,
-    /// Number of conditions: 10,000. Finding the triangles between them takes a player more than
-    /// proportional time.
+    /// Number of conditions: 10,000. A player finds triangles between the conditions, and the time
+    /// for this grows faster than the number of conditions.
     pub conditions: usize,
     /// Number of values in all parameter blocks and reference spectra together: 1,048,576.
     pub values: usize,

@@ -21,8 +21,8 @@ use crate::schema_words::{
 use crate::triangles::Triangle;
 use crate::{Fluctuation, Quantity};
 
-/// The newest version of the format that this crate reads and writes. An asset is written in the
-/// lowest version that has its keys ([`Manifest::lowest_version`]).
+/// The newest version of the format that this crate reads and writes. A writer gives an asset the
+/// lowest version that defines all keys of the asset ([`Manifest::lowest_version`]).
 pub const VERSION: &str = "1.1";
 /// All versions that this crate writes, from the lowest on.
 const VERSIONS: [&str; 2] = ["1.0", VERSION];
@@ -99,8 +99,8 @@ pub struct Manifest {
     /// conditions. Without this key, the usual law for `contact` and `quantity` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
-    /// How strongly the texture becomes stronger and weaker in time. Without this key it does not.
-    /// From version 1.1 on.
+    /// How strongly the level of the texture fluctuates over time. Without this key, the level does
+    /// not fluctuate. From version 1.1 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fluctuation: Option<Fluctuation>,
     /// The representations of the texture: each contains the parameters of one model.
@@ -126,15 +126,16 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Returns the law that the manifest states. If it states none, returns the assumed law for the
-    /// quantity and the contact.
+    /// Returns the law that the manifest states. If the manifest states no law, returns the law
+    /// that players assume for the quantity and the contact.
     pub fn law(&self) -> Law {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
     }
 
-    /// Returns the lowest version of the format that has the keys of this manifest. The version of a
-    /// manifest that is newer than [`VERSION`] is kept, because it may have keys of its own.
+    /// Returns the lowest version of the format that defines all keys of this manifest. A manifest
+    /// with a version newer than [`VERSION`] keeps its version, because it may have keys that only
+    /// the newer version defines.
     pub fn lowest_version(&self) -> String {
         if !VERSIONS.contains(&&*self.htex) {
             return self.htex.clone();
@@ -241,7 +242,7 @@ pub enum How {
     Mixed,
 }
 
-/// An asset from which another asset was mixed.
+/// One of the assets from which an asset was mixed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ingredient {
     /// Name of the asset's texture.
@@ -294,8 +295,8 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// The same as `repeatability_rms_db`, over third octaves instead of nine bands. From version
-    /// 1.1 on.
+    /// Repeatability over third octaves instead of nine bands; otherwise the same as
+    /// `repeatability_rms_db`. From version 1.1 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_third_octave_rms_db: Option<f64>,
@@ -310,14 +311,14 @@ pub struct Condition {
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
-    /// Returns whether the condition was recorded. Otherwise it was computed from recorded ones,
-    /// and may lie outside their speeds.
+    /// Returns whether the condition was recorded. Otherwise the condition was computed from
+    /// recorded conditions, and its speed may lie outside the recorded speeds.
     pub fn is_recorded(&self) -> bool {
         self.segments != Some(0)
     }
 
-    /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both
-    /// numbers must not be negative.
+    /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Neither
+    /// number may be negative.
     pub fn is_same(a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME_CONDITION * a.max(b)
     }
@@ -393,8 +394,8 @@ pub enum StoredAs {
     /// List of unsigned 8-bit integers `q`, stored as the differences between neighbours. Small
     /// differences take fewer bits.
     Packed(Steps),
-    /// Unsigned 8-bit integers `q`, predicted from the condition before and stored in a range code.
-    /// Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
+    /// Unsigned 8-bit integers `q`, predicted from the previous condition and stored in a range
+    /// code. Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
     Coded(Steps),
 }
 
@@ -404,7 +405,7 @@ pub struct Steps {
     /// Size of a step: the factor of `q`, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
-    /// Value for `q = 0`. If `log` is set, it is the natural logarithm of that value.
+    /// Value for `q = 0`. If `log` is set, `offset` is the natural logarithm of that value.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: f64,
     /// Whether `scale` and `offset` refer to the natural logarithm of the value.

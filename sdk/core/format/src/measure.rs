@@ -1,9 +1,9 @@
 //! Measures of how well a spectrum agrees with a recorded spectrum: a table with one row for each
 //! measure.
 //!
-//! From these rows the project generates the keys of `quality` (with their checks, schema and
-//! rounding), the columns of tables and reports, and the tables in the documents. The crate
-//! `htex-author` contains the functions that compute the measures.
+//! From these rows, the project generates the keys of `quality` with their checks, schema and
+//! rounding. It also generates the columns of tables and reports, and the tables in the documents.
+//! The crate `htex-author` contains the functions that compute the measures.
 
 use std::fmt;
 
@@ -70,8 +70,8 @@ pub struct MeasureRow {
     pub judged: MeasureKind,
     /// Whether assets store the measure in `quality`.
     pub stored: bool,
-    /// Whether `quality` must contain the measure. If so, and if [`Self::left_out`] is set,
-    /// `left_out` must also contain the measure.
+    /// Whether `quality` must contain the measure. If this field and [`Self::left_out`] are both
+    /// set, `left_out` must also contain the measure.
     pub required: bool,
     /// Whether assets also store the measure in `left_out`.
     pub left_out: bool,
@@ -79,8 +79,8 @@ pub struct MeasureRow {
     pub column: Option<&'static str>,
     /// Heading of the measure's column in printed tables, if it is computed from rendered samples.
     pub played: Option<&'static str>,
-    /// Caption of the measure's table in reports. The caption contains `{}` in the place of the
-    /// name of the measured object.
+    /// Caption of the measure's table in reports. In the caption, `{}` stands for the name of the
+    /// measured object.
     pub caption: Option<&'static str>,
 }
 
@@ -248,7 +248,7 @@ pub enum ErrorMeasure {
     NineBand,
     /// RMS of the energy errors in third-octave bands.
     ThirdOctave,
-    /// RMS over the bins of the difference of the magnitudes in decibels.
+    /// RMS of the difference between the magnitudes in decibels, over all frequency bins.
     LogSpectral,
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A step takes two to five bits if it differs little from the previous step. Each list has exactly
 //! one valid code, so that reading and writing a block again gives the same bytes. To make the code
-//! unique, a writer uses the Rice parameter that takes the fewest bits, and a reader refuses any
-//! other.
+//! unique, a writer uses the Rice parameter that takes the fewest bits, and a reader refuses a list
+//! with any other parameter.
 
 /// Bits of the Rice parameter `k`.
 const PARAMETER_BITS: u32 = 3;

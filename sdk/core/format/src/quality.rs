@@ -1,5 +1,5 @@
 //! How well a representation agrees with the recorded spectrum: `quality` and `left_out`. The
-//! module [`crate::quality_json`] contains their JSON.
+//! module [`crate::quality_json`] reads and writes both as JSON.
 
 use std::collections::BTreeMap;
 
@@ -105,8 +105,9 @@ pub struct Quality {
     pub by_samples: Measures,
     /// The model's energy in each of nine bands, relative to the recording's energy, decibels.
     pub band_error_db: Vec<f64>,
-    /// Error that rounding for storage causes, decibels: the nine-band RMS difference between the
-    /// spectra of the fitted parameters and of the stored parameters.
+    /// Error that rounding for storage causes, decibels. It is the nine-band RMS difference between
+    /// two spectra: the spectrum of the fitted parameters, and the spectrum of the stored
+    /// parameters.
     pub rounding_error_db: Option<f64>,
 }
 
@@ -127,14 +128,15 @@ impl Quality {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 
-/// The held-out error of a representation at a condition: its third-octave error on blocks of time
-/// to which it was not fitted.
+/// The held-out error of a representation at a condition: the third-octave error on recorded blocks
+/// that the fit did not use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOut {
     /// The error, decibels.
     pub held_out_error_db: f64,
-    /// The error relative to the difference between the odd and the even blocks of the recording: 1
-    /// is the error of a second recording. `None` if this difference is not known, or 0.
+    /// The error divided by the difference between the odd and the even blocks of the recording.
+    /// The value 1 means that the error is as large as the difference that a second recording would
+    /// show. `None` if this difference is not known, or 0.
     pub held_out_error: Option<f64>,
 }
 

@@ -6,7 +6,8 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A physical quantity of samples. Each quantity has one unit, in which it is stored and played.
+/// A physical quantity of samples. Each quantity has one unit, which assets and players use for the
+/// samples.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -145,8 +146,8 @@ impl Quantity {
 
     /// Returns the largest allowed level (RMS) of an asset, in the quantity's unit. The limit keeps
     /// samples within the range of 32-bit floats in any scene. The limits of velocity and
-    /// displacement follow from the largest allowed acceleration: a 20 Hz vibration with this
-    /// acceleration has 8.0e3 m/s and 63 m, and the limits are the next powers of ten.
+    /// displacement follow from the largest allowed acceleration. A 20 Hz vibration with this
+    /// acceleration has 8.0e3 m/s and 63 m, and each limit is the next power of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,

@@ -10,10 +10,11 @@ const DECIMALS: usize = 4;
 const DECIMALS_CODED: usize = 2;
 
 impl Manifest {
-    /// Returns the manifest as a writer stores it: with the lowest version that has its keys
-    /// ([`Self::lowest_version`]), measures of agreement and repeatability rounded to four decimals
-    /// (in decibels to two if the asset is coded), and levels to nine significant digits. Applying
-    /// this twice changes nothing.
+    /// Returns the manifest as a writer stores it: with the lowest version that defines its keys
+    /// ([`Self::lowest_version`]), and with rounded numbers. Measures of agreement and
+    /// repeatability are rounded to four decimals; if the asset is coded, values in decibels are
+    /// rounded to two. Levels are rounded to nine significant digits. Applying this twice changes
+    /// nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         rounded.htex = self.lowest_version();

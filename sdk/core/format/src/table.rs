@@ -1,7 +1,8 @@
 //! Tables: arrays of objects that are written column by column.
 //!
-//! A grid of 405 conditions has 13 numbers at each of them, each behind its key. Deflate takes more
-//! bytes for the keys than a table takes in all.
+//! A grid of 405 conditions has 13 numbers for each condition, and in an array of objects each
+//! number has its own key. After compression with Deflate, these keys take more bytes than the
+//! whole table.
 
 #[cfg(feature = "write")]
 use std::collections::BTreeSet;

@@ -9,7 +9,7 @@
 //! triangle in counterclockwise order, and check three things:
 //!
 //! - Each directed edge belongs to only one triangle.
-//! - The edges that only one triangle has form one outline.
+//! - The edges that belong to only one triangle form one outline.
 //! - The outline turns left at each corner and goes around once.
 //!
 //! These tests are sufficient for the following reason. The edges between two triangles cancel, so

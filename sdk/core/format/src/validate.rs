@@ -21,8 +21,9 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file. Reports every broken rule, except rules that are broken
-/// only as a consequence of a reported one. Never panics, and reads no more than `limits` allow.
+/// Validates the bytes of a `.htex` file. Reports every broken rule, except a rule that is broken
+/// only because another reported rule is broken. Never panics, and reads no more than `limits`
+/// allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }

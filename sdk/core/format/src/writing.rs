@@ -15,9 +15,10 @@ use htex_base::finding::Findings;
 impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
     ///
-    /// Levels are rounded to nine significant digits, and the measures of agreement to four
-    /// decimals, or to two if the asset is coded ([`crate::Manifest::rounded`]). Parameters are rounded to values that their fields
-    /// can store ([`crate::round_parameters`]).
+    /// Levels are rounded to nine significant digits. Measures of agreement are rounded to four
+    /// decimals; if the asset is coded, measures in decibels are rounded to two
+    /// ([`crate::Manifest::rounded`]). Parameters are rounded to values that their fields can store
+    /// ([`crate::round_parameters`]).
     ///
     /// # Errors
     /// If the asset breaks a rule of the format, exceeds the default [`Limits`], or has parameters

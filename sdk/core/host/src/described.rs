@@ -1,4 +1,4 @@
-//! Models that are known by their descriptor alone, without their code.
+//! Models for which the host has only the descriptor, and not the code.
 
 use std::path::Path;
 use std::sync::Arc;

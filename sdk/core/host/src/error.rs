@@ -56,7 +56,7 @@ pub enum HostError {
         path: String,
         name: String,
     },
-    /// A file that the user did not name, e.g. one from a recipe, is not a WASM module.
+    /// A file that the user did not name, e.g. a file that a recipe names, is not a WASM module.
     #[error(
         "{path}: it is no WASM module; only the user may name a native library, because it runs with all of their rights: if you trust it, give it \
          yourself (`--plugin FILE`, `plugins` in Python)"
@@ -97,7 +97,8 @@ pub enum HostError {
         /// The choices, or the kind of number, the range and the unit.
         takes: Box<str>,
     },
-    /// The method of synthesis is unknown, or its number is out of range.
+    /// The method of synthesis is unknown, or the length of the loop or the number of taps is out
+    /// of range.
     #[error(
         "synthesis `{text}`: it takes streamed, loop:SECONDS (0.1 to 60, at most 67 million samples) \
          or filter:TAPS (15 to 4095)"

@@ -64,9 +64,9 @@ pub struct WasmLimits {
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
-    /// For checkers of models: whether the host detects a call that writes beyond its arrays within
-    /// the module's own memory, and returns an error. Default false, because such a call harms only
-    /// the module itself.
+    /// For checkers of models: whether the host returns an error when a call writes beyond its
+    /// arrays but still within the module's own memory. Default false, because such a call harms
+    /// only the module itself.
     pub guards: bool,
 }
 
@@ -91,8 +91,9 @@ pub enum WasmEngine {
     /// the memory's bound. Without signal handlers, the engine also lacks some protections against
     /// attacks by speculative execution.
     Checked,
-    /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. If no module
-    /// caused a signal, these handlers pass it to the handlers that the process had before.
+    /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. If a module
+    /// did not cause the signal, these handlers pass the signal to the handlers that the process
+    /// had before.
     Signals,
 }
 
@@ -107,9 +108,10 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time for compilation and for all calls except the calls of voices. While the program runs, a
-    /// tenth of the elapsed time is added to the time that is left, up to this total. Each voice
-    /// has a separate allowance: one second, and ten times the duration of its samples.
+    /// Time for compilation and for all calls except the calls of voices. While the program runs,
+    /// the remaining time grows by a tenth of the elapsed time, up to this total. Each voice has a
+    /// separate allowance. The allowance starts at one second; each rendered sample adds ten times
+    /// the sample's duration, up to one second in total.
     pub time: Duration,
     /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
@@ -145,8 +147,8 @@ impl WasmTotal {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCompiler {
-    /// This process compiles the module. Before compilation, it compares an estimate of the time
-    /// with the limit `compile`. It does not check the limit `compile_bytes`.
+    /// This process compiles the module. Before compilation, the process compares an estimate of
+    /// the time with the limit `compile`. It does not check the limit `compile_bytes`.
     #[default]
     Here,
     /// Another process compiles the module: the host starts this program with these arguments. The

@@ -336,8 +336,8 @@ impl LoadedModel {
         }
     }
 
-    /// For checkers of models: renders two equal voices, one after the other, in a single instance
-    /// of a WASM module, `frames` samples for each voice. In normal use, each voice has its own
+    /// For checkers of models: renders two equal voices in a single instance of a WASM module, one
+    /// after the other, with `frames` samples for each voice. In normal use, each voice has its own
     /// instance. Returns `None` for a model that is not a WASM module.
     ///
     /// # Errors
@@ -370,8 +370,8 @@ impl LoadedModel {
     }
 
     /// Returns whether the model has the extension `htex.motion/1`. The voices of such a model
-    /// receive the motion of the finger ([`ModelVoice::set_motion`]) and themselves change the
-    /// sound with the motion. The fits of such a model receive the speed and force of the
+    /// receive the motion of the finger ([`ModelVoice::set_motion`]), and the model itself changes
+    /// the sound with the motion. The fits of such a model receive the speed and force of the
     /// recording.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()

@@ -42,8 +42,8 @@ pub enum Note {
     },
     /// A file in a plugin folder could not be loaded.
     Broken { path: PathBuf, error: HostError },
-    /// A native library in a plugin folder that carries no descriptor, so that it cannot be listed
-    /// without running it.
+    /// A native library in a plugin folder carries no descriptor, so the host cannot list its model
+    /// without running the library.
     Undescribed { path: PathBuf },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's plugin folder, could not be read.
     Folder { path: PathBuf, what: String },

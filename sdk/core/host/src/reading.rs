@@ -17,24 +17,25 @@ const BESIDE_EDGE_BINS: f64 = 0.5;
 const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
-    /// Returns whether the model's magnitudes describe spectral lines, as a window measures them,
-    /// instead of a density. Sums of sinusoids have lines. Models that follow the motion also have
-    /// lines, because a finger crosses their surface repeatedly.
+    /// Returns whether the model's magnitudes describe spectral lines instead of a spectral
+    /// density. The magnitude of a line is the value that a window measures. Sums of sinusoids have
+    /// lines. Models that follow the motion also have lines, because a finger crosses their surface
+    /// repeatedly.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
 
-    /// Returns the magnitude that a recording of the voice would measure with a Hann window of 0.2
-    /// s, on the band's grid and with unit RMS. A bin next to a steep flank measures part of the
-    /// flank. A bin at an edge of the band measures frequencies up to half a bin beyond the edge.
-    /// If the model has its own sample rate, the result includes the effect of resampling to a high
-    /// rate. The RMS of the result is then not 1, but [`Self::played_part`].
+    /// Returns the magnitude that one would measure in a recording of the voice with a Hann window
+    /// of 0.2 s, on the band's grid and with unit RMS. A bin next to a steep flank measures part of
+    /// the flank. A bin at an edge of the band measures frequencies up to half a bin beyond the
+    /// edge. If the model has its own sample rate, the result includes the effect of resampling to
+    /// a high rate. The RMS of the result is then [`Self::played_part`] instead of 1.
     ///
     /// A voice plays its model's magnitude as a density. If the model keeps energies
     /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
     /// [sharpened](sharpen). For models with spectral lines ([`Self::has_lines`]), this function
-    /// returns the model's magnitude. For sums of sinusoids, that magnitude is what a window
-    /// measures within its main lobe.
+    /// returns the model's magnitude. For sums of sinusoids, the model's magnitude is what a window
+    /// measures within the window's main lobe.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].
@@ -65,10 +66,10 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns which fraction of a voice's level remains after resampling to the player's rate,
+    /// Returns the fraction of a voice's level that remains after resampling to the player's rate,
     /// measured in the bins of the band. The fraction is 1, except for models with their own sample
-    /// rate. For these models, resampling removes power near half of the model's rate; the fraction
-    /// is about 0.7 if all of the power lies there.
+    /// rate. For these models, resampling removes power near half of the model's rate. If all of
+    /// the power lies there, the fraction is about 0.7.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].

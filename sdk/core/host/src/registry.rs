@@ -13,13 +13,14 @@ use crate::{builtin, own};
 
 /// Models by id. If several models have the same id, these rules decide which one is used:
 ///
-/// - A model whose file the user named, or that the program added, takes precedence. Among several
-///   such models, the one that was added first takes precedence.
-/// - Among installed models and the built-in model, only the newest of each major version is
-///   considered. It does not matter in which of these places it was found. Among equal versions,
-///   the first one in the order of [`Search`] is used. The order of the places (the plugin folders,
-///   the user's folder, this program) decides between major versions: the major version in the
-///   first place is used. If one place contains several major versions, the newest is used.
+/// - A model takes precedence over all others if the user named its file, or if the program added
+///   the model. Among several such models, the one that was added first takes precedence.
+/// - Of the installed models and the built-in model, the registry considers only the newest of each
+///   major version. The place in which a version was found does not matter. Among equal versions,
+///   the first one in the order of [`Search`] is used. Between different major versions, the order
+///   of the places decides: the plugin folders, the user's folder, the folders of all users, this
+///   program. The registry uses the major version that is in the first of these places. If that
+///   place contains several major versions, the registry uses the newest.
 ///
 /// The other models are returned only if their version is requested.
 ///
@@ -211,8 +212,8 @@ impl Registry {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
 
-    /// Adds a model that itself follows the motion (the extension `htex.motion/1`), and is
-    /// otherwise the same as [`Self::add_model`].
+    /// Adds a model that itself follows the motion (the extension `htex.motion/1`). In every other
+    /// respect, this function does the same as [`Self::add_model`].
     ///
     /// # Errors
     /// Returns the errors of [`Self::add_model`].
@@ -352,7 +353,7 @@ impl Registry {
         }
     }
 
-    /// Returns all models that are used, one per id.
+    /// Returns the models that are used: one model for each id.
     pub fn models(&self) -> &[LoadedModel] {
         &self.models
     }

@@ -12,10 +12,10 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 /// The user's plugin folder, relative to the data folder.
 const FOLDER: &str = "htex/plugins";
 
-/// The places to search for models, in order of precedence: `files`, models embedded in an asset,
-/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, the folders of all users, built-in models. From `dirs` on, a newer version
-/// takes precedence over an older version with the same major version, even if the older version is
-/// in an earlier place ([`Registry`]).
+/// The places to search for models, in order of precedence: `files`, `modules`, models embedded in
+/// an asset, `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, the folders of all users, built-in
+/// models. From `dirs` on, a newer version takes precedence over an older version with the same
+/// major version, even if the older version is in an earlier place ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};
@@ -39,14 +39,15 @@ pub struct Search {
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
-    /// Whether to search `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, or
-    /// `~/.local/share` if that is not set), and then in the folders of all users
-    /// (`$XDG_DATA_DIRS`, or `/usr/local/share` and `/usr/share`).
+    /// Whether to search `htex/plugins` in the user's data folder, and then in the folders of all
+    /// users. The user's data folder is `$XDG_DATA_HOME`, or `~/.local/share` if this variable is
+    /// not set. The folders of all users are in `$XDG_DATA_DIRS`, or `/usr/local/share` and
+    /// `/usr/share`.
     pub user_dir: bool,
     /// Whether to include the models linked into this program.
     pub builtin: bool,
-    /// Whether to read only the descriptors of plugins in folders. No native library is loaded
-    /// then, and the models found so can be listed, but not called.
+    /// Whether to read only the descriptors of plugins in folders. The search then loads no native
+    /// library; a program can list the models that it found, but cannot call them.
     #[cfg(feature = "descriptions")]
     pub only_descriptors: bool,
     pub limits: WasmLimits,

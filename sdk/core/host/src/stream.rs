@@ -24,8 +24,8 @@ pub struct Stream<S = ModelVoice> {
 }
 
 impl<S> Stream<S> {
-    /// Creates a stream at `rate_hz` from a source with samples at `source_rate_hz` and frequencies
-    /// up to `top_hz`. `own_rate` is true if the source cannot render at any other rate
+    /// Creates a stream at `rate_hz` from a source. The source has samples at `source_rate_hz` and
+    /// frequencies up to `top_hz`. `own_rate` is true if the source cannot render at any other rate
     /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors

@@ -29,8 +29,8 @@ const FADE_S: f64 = 0.1;
 /// out.
 const RUN_IN_S: f64 = 0.1;
 
-/// A method of synthesis. As text it is `streamed`, `loop:SECONDS` or `filter:TAPS`. The number is
-/// optional: `loop` and `filter` have defaults.
+/// A method of synthesis. Its text form is `streamed`, `loop:SECONDS` or `filter:TAPS`. The number
+/// is optional: `loop` and `filter` have defaults.
 ///
 /// ```
 /// use htex_host::Synthesis;
@@ -54,9 +54,10 @@ pub enum Synthesis {
         seconds: f64,
     },
     /// White noise through a linear-phase filter with the model's magnitude. The filter has 15 to
-    /// 4095 taps. It runs at the lowest integer fraction of the output's sample rate that the band
-    /// allows, as the noise of most models does. Its frequency resolution is four times this lower
-    /// rate, divided by the number of taps. The spectrum does not change with time.
+    /// 4095 taps. The noise and the filter run at a lower sample rate: the output's sample rate
+    /// divided by an integer, as low as the band allows. The noise of most models also runs at this
+    /// lower rate. The filter's frequency resolution is four times this lower rate, divided by the
+    /// number of taps. The spectrum does not change with time.
     Filter {
         /// Number of coefficients of the filter.
         taps: usize,

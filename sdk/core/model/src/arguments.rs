@@ -32,7 +32,8 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
 /// Makes a band from its two edges, hertz.
 ///
 /// # Errors
-/// If the edges are not ascending, or not above 0 Hz and at most 1 MHz.
+/// If the lower edge is not above 0 Hz, the upper edge is not above the lower edge, or the upper
+/// edge is above 1 MHz.
 pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });

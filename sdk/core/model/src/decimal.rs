@@ -1,5 +1,6 @@
 //! Writes numbers as decimal texts. The text formatting of the standard library would add 20 kB to
-//! a WASM module. Packages such as `ryu` cannot run at compile time, as `exact.rs` must.
+//! a WASM module. `exact.rs` needs code that runs at compile time, and packages such as `ryu`
+//! cannot do that.
 
 /// Significant digits of the result of [`rounded`].
 const DIGITS: i32 = 9;

@@ -34,15 +34,15 @@ pub trait MovingFilter: Sized + Send + 'static {
     const RATE_FIELD: usize;
 
     /// Makes the filter that the parameters describe, and returns it with its level. The level is
-    /// the RMS of white noise that has a magnitude of 1 in each bin and then passes the filter and
-    /// the band limits.
+    /// the RMS of white noise after the filter and the band limits. Before the filter, the noise
+    /// has a magnitude of 1 in each bin.
     ///
     /// # Errors
     /// If the filter is not stable, or has no finite energy in the band.
     fn new(parameters: &Values<'_>, band: Band, passed: &PassedPower)
     -> Result<(Self, f64), Error>;
 
-    /// Sets the target: the filter that this one becomes after `steps` calls of
+    /// Sets the target: this filter becomes the target filter after `steps` calls of
     /// [`step`](Self::step). Returns the level of the target, as [`new`](Self::new) does.
     ///
     /// # Errors
@@ -55,8 +55,8 @@ pub trait MovingFilter: Sized + Send + 'static {
         steps: u32,
     ) -> Result<f64, Error>;
 
-    /// Moves the coefficients by one step towards the target. With `is_last`, they reach the
-    /// target.
+    /// Moves the coefficients by one step towards the target. If `is_last` is true, the
+    /// coefficients reach the target.
     fn step(&mut self, is_last: bool);
 
     /// Filters one sample.
@@ -65,8 +65,8 @@ pub trait MovingFilter: Sized + Send + 'static {
     /// Filters groups of samples in place.
     fn process(&mut self, block: &mut [Group]);
 
-    /// Does the same as [`Voice::render_together`]. Override it if the filter can process several
-    /// voices faster in one call.
+    /// Does the same as [`Voice::render_together`]. Override this function if the filter can
+    /// process several voices faster in one call.
     fn render_together(voices: &mut [&mut FilteredVoice<Self>], frames: usize, out: &mut [f32]) {
         let rows = out.chunks_exact_mut(frames.max(1));
         for (voice, row) in voices.iter_mut().zip(rows) {
@@ -145,8 +145,7 @@ impl<F: MovingFilter> FilteredVoice<F> {
         self.gain
     }
 
-    /// Returns how many samples of the last rendered group the voice has already written to the
-    /// caller's blocks.
+    /// Returns how many samples of the last rendered group are already in the caller's blocks.
     pub fn taken(&self) -> usize {
         self.taken
     }
@@ -263,7 +262,7 @@ fn gain(rate_hz: f64, level: f64) -> f64 {
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
 }
 
-/// Checks a filter's level, by which magnitudes and samples are divided.
+/// Checks a filter's level, which is the divisor of magnitudes and samples.
 ///
 /// # Errors
 /// If the level is not finite, or not above 0.

@@ -1,10 +1,11 @@
 //! The texture model ABI: the traits that a model written in Rust implements, and the C functions
 //! that every model exports.
 //!
-//! A *model* describes a magnitude spectrum by a few parameters. A model has five tasks: it states
+//! A *model* describes a magnitude spectrum by a few parameters. A model has five tasks. It states
 //! its own descriptor, fits parameters to a spectrum, computes the spectrum of given parameters,
-//! interpolates parameters, and makes voices, which render samples. In Rust, a model implements the
-//! trait [`Model`], which covers these five tasks, and a voice implements the trait [`Voice`].
+//! and interpolates parameters. It also makes voices, which render samples. In Rust, a model
+//! implements the trait [`Model`], which covers these five tasks, and a voice implements the trait
+//! [`Voice`].
 //!
 //! To write a model in Rust, implement both traits and call [`export_model!`]. The macro generates
 //! the model's table of C functions ([`abi::ModelTable`]). Hosts call native libraries and built-in

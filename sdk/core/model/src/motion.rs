@@ -108,18 +108,18 @@ impl FitCondition {
 /// A voice that receives the motion of the finger through the extension `htex.motion/1`.
 ///
 /// Implement this trait if the sound depends on more than speed and force, e.g. on the finger's
-/// position or direction, or if it imitates stick-slip. To declare the extension, pass `extensions:
-/// [motion]` to [`export_model!`](crate::export_model); the macro then requires that
+/// position or direction, or if the model imitates stick-slip. To declare the extension, pass
+/// `extensions: [motion]` to [`export_model!`](crate::export_model); the macro then requires that
 /// [`Model::Voice`](crate::Model::Voice) implements this trait.
 ///
 /// # How a host uses it
 ///
 /// For a voice without this trait, the host scales all frequencies with the speed and the level
 /// with the force. For a voice with this trait, the host scales nothing. The host only interpolates
-/// parameters between conditions, and calls [`set_motion`](Self::set_motion): once before the first
-/// sample, and again before each block for which the motion has changed. A host that does not
-/// support the extension never calls `set_motion`. Until the first call of `set_motion`, a voice
-/// therefore plays as if the finger moved as in the recording.
+/// parameters between conditions and calls [`set_motion`](Self::set_motion). It calls this function
+/// once before the first sample, and again before each block for which the motion has changed. A
+/// host that does not support the extension never calls `set_motion`. Until the first call of
+/// `set_motion`, a voice therefore plays as if the finger moved as in the recording.
 ///
 /// # Example
 ///

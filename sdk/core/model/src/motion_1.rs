@@ -14,12 +14,12 @@ pub const MAX_FORCE_N: f64 = 1_000_000.0;
 /// surface, mm.
 pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
 
-/// Sets the motion of the finger at a voice's next sample. The arguments are the speed along the
-/// finger's path (mm/s, negative while the position decreases), the normal force (newtons, not
-/// negative), the position along the path, and the two coordinates on the surface (mm; all three
-/// may be negative). The speed stays constant until the next call. Returns a status. If the status
-/// is negative, the voice continues unchanged. `[render thread, no allocation; one thread at a time
-/// for one voice]`
+/// Sets the motion of the finger at a voice's next sample. The arguments are: the speed along the
+/// finger's path (mm/s, negative while the position decreases); the normal force (newtons, not
+/// negative); the position along the path; and the two coordinates on the surface. The position and
+/// the coordinates are in mm. All three may be negative. The speed stays constant until the next
+/// call. Returns a status. If the status is negative, the voice continues unchanged. `[render
+/// thread, no allocation; one thread at a time for one voice]`
 pub type MotionSetFn = unsafe extern "C" fn(
     voice: i64,
     speed_mm_s: f64,

@@ -49,7 +49,7 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value of the field for assets of an earlier minor version of the model that did not have the
+    /// Value of the field for assets that an earlier minor version of the model wrote without the
     /// field. Only for scalars.
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
@@ -174,7 +174,7 @@ impl StaticField {
         Self { default: Some(value), ..self }
     }
 
-    /// Sets the usual range of the field: the range of a slider for it.
+    /// Sets the usual range of the field, which is the range of its slider.
     pub const fn usual(self, range: UsualRange) -> Self {
         Self { usual: Some(range), ..self }
     }
@@ -240,8 +240,8 @@ impl StaticOption {
         Self { sweep_alone: values, ..self }
     }
 
-    /// Names another option that limits this one: a value of this option above the other option's
-    /// value has no effect.
+    /// Names another option that limits this one. Values of this option above the other option's
+    /// value have no effect.
     pub const fn not_above(self, option: &'static str) -> Self {
         Self { not_above: Some(option), ..self }
     }

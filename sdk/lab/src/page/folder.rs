@@ -1,8 +1,8 @@
 //! Serves a folder of files, such as the studio, to browsers on this machine only.
 //!
 //! The server reads all files of the folder when it starts, so no request can name a file on disk.
-//! The server refuses folders that contain links. Such a folder may come from another person, whose
-//! scripts could read the files to which the links point.
+//! The server refuses folders that contain links. Such a folder may come from another person, and
+//! that person's scripts could read the files to which the links point.
 //!
 //! The address is `http://NAME.localhost:PORT/`. NAME is a keyed hash of the folder, and only this
 //! user can read the key. A browser keeps service workers and stored data separately for each name.
@@ -10,8 +10,8 @@
 //! what a page of another folder stored. The same folder always gets the same name. The server
 //! refuses requests to any other host name, including `127.0.0.1`.
 //!
-//! A page must not navigate its tab to another origin, because a script could put the contents of
-//! files that the user drops on the page into the new address. No header can forbid navigation:
+//! A page must not navigate its tab to another origin. Otherwise, a script could put the contents
+//! of files that the user drops on the page into the new address. No header can forbid navigation:
 //! browsers never supported `navigate-to`, and a sandbox without `allow-top-navigation` restricts
 //! only frames. So each page begins with `stay.js`, which uses the Navigation API to cancel every
 //! navigation to another origin. `stay.js` has no effect in a browser without that API

@@ -4,8 +4,8 @@
 //! page. `hyper` runs in a separate runtime with one thread, and passes a request on before the
 //! request's body arrives. The gate checks the head of the request. The server then reads the body,
 //! up to 4096 bytes. Head and body each have a deadline of one second. At most 64 connections are
-//! open. If 64 are open, a new connection replaces the oldest one that has not passed the gate, or
-//! the oldest one if all have passed it.
+//! open. If 64 connections are open, a new connection replaces the oldest one that has not passed
+//! the gate. If all have passed the gate, the new connection replaces the oldest of all.
 //!
 //! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
 //! read a body before the gate could refuse it, has no deadlines, and uses a thread for each

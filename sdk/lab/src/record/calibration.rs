@@ -15,8 +15,8 @@ const NAMES: [(&str, &str); AXES] =
 /// Longest file, bytes.
 const MOST_BYTES: u64 = 1 << 16;
 
-/// The calibration matrix of a six-axis force sensor. Forces (N) and torques (N m) are the matrix
-/// times the voltages of the sensor's six channels.
+/// The calibration matrix of a six-axis force sensor. The matrix, multiplied by the voltages of the
+/// sensor's six channels, gives forces (N) and torques (N m).
 ///
 /// ```
 /// # use htex_lab::record::Calibration;

@@ -2,9 +2,9 @@
 //! target, and the number of sweeps.
 //!
 //! A sweep is one stroke of the finger over the surface. The spectrum of a take uses only the
-//! middles of its sweeps. In these middles the finger may be on target, although it is lifted for
-//! most of the take. For example, a finger was lifted after 3.2 s of a take of 10 s; the middles of
-//! its three sweeps kept to the target.
+//! middles of its sweeps. In these middles the finger may be on target, even if the finger is
+//! lifted for most of the take. For example, in one take of 10 s the finger was lifted after 3.2 s,
+//! but the middles of the three sweeps kept to the target.
 
 use htex_author::recording::Sums;
 use htex_author::{Recording, Segments, sliding};
@@ -86,19 +86,19 @@ impl Target {
 /// How much of a take is usable. Each share is a fraction of the take's length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share of time in which the finger slides on its target. Three conditions must hold for means
-    /// over 50 ms. The friction is at least half its mean over the take. The speed is at least half
-    /// the target speed, and above the target speed by at most the tolerance. The force is within
-    /// the tolerance of its target. Without a target for the speed or the force, that condition
-    /// always holds.
+    /// Share of time in which the finger slides on its target. Three conditions must hold. All of
+    /// them use means over 50 ms. The friction is at least half its mean over the take. The speed
+    /// is at least half the target speed, and exceeds the target speed by at most the tolerance.
+    /// The force is within the tolerance of its target. If there is no target for the speed or the
+    /// force, the condition for that quantity always holds.
     pub on_target: f64,
     /// Share of time in which the finger slides.
     pub sliding: f64,
-    /// Share of time in which the speed meets its condition (see [`Self::on_target`]). Absent
-    /// without a target or a measured speed.
+    /// Share of time in which the speed meets its condition (see [`Self::on_target`]). Absent if
+    /// there is no target speed, or if the speed was not measured.
     pub speed: Option<f64>,
     /// Share of time in which the normal force meets its condition (see [`Self::on_target`]).
-    /// Absent without a target or a measured force.
+    /// Absent if there is no target force, or if the force was not measured.
     pub force: Option<f64>,
     /// Number of complete sweeps.
     pub sweeps: usize,

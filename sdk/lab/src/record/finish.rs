@@ -66,9 +66,9 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, L
     Ok(recorded)
 }
 
-/// Converts the takes that a killed program left in a folder to recordings, and returns them. Among
-/// these takes, complete ones are judged like any take. Takes that another program is still
-/// recording are not changed.
+/// Converts the takes that a killed program left in a folder to recordings, and returns them.
+/// Complete takes among them are judged in the same way as any other complete take. Takes that
+/// another program is still recording are not changed.
 ///
 /// # Errors
 /// If the header of a part file is damaged, or a recording cannot be written.

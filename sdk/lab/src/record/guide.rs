@@ -1,5 +1,5 @@
 //! Guidance for the user during a recording. It shows the motion of the target, the position of the
-//! user's finger, and whether the force is right, and it drives a metronome.
+//! user's finger, and whether the force is right. It also drives a metronome.
 
 use serde::Serialize;
 

@@ -70,8 +70,8 @@ impl Adapter for Replay {
 }
 
 impl Replay {
-    /// Opens a file. If `fast` is true, the samples come as fast as they are read; otherwise they
-    /// come at their sample rate.
+    /// Opens a file. If `fast` is true, the input delivers samples as fast as it can read them.
+    /// Otherwise, it delivers them at their sample rate.
     ///
     /// # Errors
     /// Returns the errors of [`Adapter::open_input`].

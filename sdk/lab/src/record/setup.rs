@@ -31,8 +31,8 @@ pub struct Setup {
     pub quantity: Quantity,
     /// Target speed and normal force.
     pub target: Exploration,
-    /// Allowed relative difference of the mean, minimum and maximum of the speed and the force from
-    /// their targets; 0.1 in the paper.
+    /// Allowed relative difference from the target, for the mean, minimum and maximum of the speed
+    /// and of the force; 0.1 in the paper.
     pub tolerance: f64,
     /// Requirements that a take must meet to be accepted.
     pub required: Requirements,
@@ -54,8 +54,8 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. From the second take on, the user first gets time to lift the finger, as
-    /// long as the countdown.
+    /// Before each take. From the second take on, the user first gets time to lift the finger; this
+    /// time is as long as the countdown.
     Each,
 }
 

@@ -26,8 +26,8 @@ pub trait TrackerRows: Send {
     /// If the tracker delivers something that is not a position.
     fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), LabError>;
 
-    /// Called when the source's clock starts again at 0 s, because another source is read or the
-    /// same one was restarted. Rows that arrived earlier are dropped.
+    /// Called when the source's clock starts again at 0 s, because the session reads another source
+    /// or has restarted the same source. Rows that arrived earlier are dropped.
     fn restart(&mut self);
 }
 

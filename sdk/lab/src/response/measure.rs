@@ -20,7 +20,8 @@ use crate::error::LabError;
 ///
 /// # Errors
 /// - A setting is out of range.
-/// - There are no records, they have different sample rates, or a record is shorter than a window.
+/// - There are no records, the records have different sample rates, or a record is shorter than a
+///   window.
 /// - There are no hits, or fewer than two usable ones.
 /// - A magnitude is out of the range that a response file may contain.
 pub fn measure(
@@ -161,8 +162,8 @@ pub struct MeasuredResponse {
 }
 
 impl MeasuredResponse {
-    /// Converts the response to a [`SetupResponse`], with which recordings are corrected for the
-    /// rig, and scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file
+    /// Converts the response to a [`SetupResponse`]. With its help, programs correct recordings for
+    /// the rig, and scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file
     /// that recordings and scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {

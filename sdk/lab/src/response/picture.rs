@@ -11,8 +11,8 @@ const LOW_HEIGHT: f64 = 170.0;
 /// Colour of the standard deviation.
 const DEVIATION: &str = "#a0a0a0";
 
-/// Draws one SVG with the magnitude in decibels and its standard deviation, the phase in degrees,
-/// and the coherence.
+/// Draws one SVG that shows the magnitude in decibels and its standard deviation, the phase in
+/// degrees, and the coherence.
 #[must_use]
 pub fn response_picture(measured: &MeasuredResponse, title: &str) -> String {
     let plots = [magnitude(measured, title), phase(measured), coherence(measured)];

@@ -1,4 +1,4 @@
-//! The interfaces that a session needs: a participant to ask, a clock, and a rig that plays.
+//! Traits through which a session asks the participant, reads a clock and plays trials.
 
 use std::time::Duration;
 
@@ -59,8 +59,8 @@ const GUARD: Duration = Duration::from_millis(300);
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Returns how long keys must be ignored after the view is shown. Keys pressed in this time
-    /// were meant for the previous view.
+    /// Returns how long the asker must ignore keys after it shows the view. Keys pressed in this
+    /// time were meant for the previous view.
     pub fn guard(&self) -> Duration {
         match self {
             Self::Question { .. } | Self::Matching { .. } => GUARD,
@@ -81,11 +81,11 @@ pub enum Key {
     Quit,
 }
 
-/// The connection to the participant, who may be simulated. After a view is shown, the connection
-/// must ignore keys for the time [`View::guard`].
+/// The connection to the participant, who may be simulated. After the connection shows a view, it
+/// must ignore keys for the time that [`View::guard`] returns.
 pub trait Asker {
-    /// Shows a view, and drops keys that were pressed before. So far, `done` of `all` trials have
-    /// been rated.
+    /// Shows a view, and drops keys that were pressed before. `done` is the number of trials rated
+    /// so far, and `all` is the number of all trials.
     fn show(&mut self, view: &View, done: usize, all: usize);
 
     /// Returns the next key since the last [`Self::show`], if there is one.
@@ -99,7 +99,7 @@ pub trait Clock {
     /// Waits for this time. A simulated clock does not wait, but advances.
     fn pass(&mut self, time: Duration);
 
-    /// Tells a simulated clock that something of this length was played, so that it advances.
+    /// Advances a simulated clock by the length of something that was played.
     fn played(&mut self, time: Duration);
 
     /// Returns date and time in UTC, in the format of [`crate::study::utc`], or `None` for a
@@ -117,7 +117,8 @@ pub struct Playback {
     pub drive_v: Option<f64>,
     /// Levels of the samples that were written to the device.
     pub output: OutputLevels,
-    /// RMS, in the assets' unit, that corresponds to the drive of the device.
+    /// Reference level: the RMS that is mapped to the device's drive voltage or preview level, in
+    /// the assets' unit.
     pub reference_rms: f64,
     /// The recording of the felt force, which is already on disk.
     pub felt: Option<FeltFile>,
@@ -127,8 +128,8 @@ pub struct Playback {
 pub trait Rig {
     type Error: From<LabError> + std::fmt::Display;
 
-    /// Plays a stimulus. Calls `ends` for each block and stops as soon as possible once it returns
-    /// true.
+    /// Plays a stimulus. Calls `ends` for each block, and stops as soon as possible after `ends`
+    /// returns true.
     ///
     /// # Errors
     /// The errors of the renderer and of the device.
@@ -138,7 +139,7 @@ pub trait Rig {
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Playback, Self::Error>;
 
-    /// Returns the drive of a display, volts, and the levels that were written to the device, for
+    /// Returns the drive of a display (volts) and the levels that were written to the device, for
     /// the last [`Self::play`] that ended with an error. Returns `None` if the device was not
     /// opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
@@ -151,7 +152,8 @@ pub trait Rig {
     /// notice.
     fn tell(&self, notice: &str);
 
-    /// Returns the nine-band error of a representation, decibels, if the asset states it.
+    /// Returns the nine-band error of `model` for `texture`, decibels, if the asset states this
+    /// error.
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64>;
 
     /// Returns whether the program was asked to end, for example by a signal.

@@ -52,14 +52,14 @@ pub struct FeltSetup {
     pub map: Option<String>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Speed and normal force of the study's motion, if it is a single motion.
+    /// Speed and normal force of the study's motion, if the study has a single motion.
     pub target: Exploration,
     pub format: Format,
     /// Name and version of the program that records.
     pub tool: String,
-    /// Whether a recording begins with the first sample of the source, instead of when the first
-    /// played sample reaches the display. Trials that are not played in real time need this
-    /// setting, because they have no common clock with the source.
+    /// Whether a recording begins with the first sample of the source. If false, the recording
+    /// begins when the first played sample reaches the display. Trials that are not played in real
+    /// time need this setting, because they have no common clock with the source.
     pub is_fast: bool,
 }
 

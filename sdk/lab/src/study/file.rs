@@ -48,16 +48,16 @@ pub struct Study {
     /// The textures.
     #[schemars(length(min = 1, max = 256))]
     pub textures: Vec<Texture>,
-    /// Models in which each texture is played, by short name or id.
+    /// The models that play each texture, by short name or id.
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
     /// An additional model that serves as a check of the participants. Choose the best available
     /// model (`bands`). The model is played and rated like the other models, and is marked in the
-    /// results. A participant who gives it low ratings is unreliable.
+    /// results. A participant who gives the hidden reference low ratings is unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
-    /// Number of trials for each texture in each model.
+    /// Number of trials for each combination of texture and model.
     #[serde(default = "five")]
     #[schemars(range(min = 1, max = 1000))]
     pub repetitions: u32,
@@ -135,20 +135,20 @@ pub enum Order {
     /// All trials in random order.
     #[default]
     Random,
-    /// The trials are in blocks, one block for each repetition. In a block, every texture occurs
-    /// once in every model, in random order.
+    /// The trials are in blocks, one block for each repetition. In a block, every combination of
+    /// texture and model occurs once, in random order.
     BlockedByRepetition,
     /// All trials of a texture follow each other. Both the textures and the trials of each texture
     /// are in random order. In this order, the experimenter exchanges the real texture as rarely as
     /// possible.
     BlockedByTexture,
     /// Each repetition is a row of a Latin square. The conditions of the square are the pairs of a
-    /// texture and a model. Over as many rows as there are conditions, each condition occurs once at
+    /// texture and a model. If there are as many rows as conditions, each condition occurs once at
     /// each position.
     LatinSquare,
     /// Each repetition is a row of a Williams square (Williams 1949). A Williams square is a Latin
-    /// square in which, over all rows, each condition also follows every other condition equally
-    /// often.
+    /// square with one more property: over all rows, each condition follows every other condition
+    /// equally often.
     WilliamsSquare,
 }
 
@@ -168,35 +168,35 @@ pub enum Phase {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Training {
-    /// Number of practice trials. They are drawn from the trials of the testing.
+    /// Number of practice trials. htex draws them at random from the trials of the testing phase.
     #[serde(default = "five")]
     #[schemars(range(min = 1, max = 1000))]
     pub trials: u32,
 }
 
-/// Settings of the phase `gain`. The participant matches each texture in one model, and the
-/// resulting gain is also used for the other models (paper, "Gain matching task").
+/// Settings of the phase `gain`. The participant matches each texture as played by one model. htex
+/// also uses the resulting gain for the other models (paper, "Gain matching task").
 ///
 /// In the paper, the matching starts at the maximum. In htex, the participant first raises the
 /// level from `start_db` until the texture can be felt, and the matching starts at that level. A
-/// gain is in decibels relative to the maximum. The maximum depends on the device: for a display it
-/// is `device.drive_v` (default: the display's limit), for sound `level_dbfs` (default: -18 dBFS),
-/// and for all other devices `gain_db` (default: 0 dB).
+/// gain is in decibels relative to the maximum. The maximum depends on the device. For a display,
+/// it is `device.drive_v` (default: the display's limit). For sound, it is `level_dbfs` (default:
+/// -18 dBFS). For all other devices, it is `gain_db` (default: 0 dB).
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Matching {
-    /// The model in which the textures are matched.
+    /// The model that plays the textures during the matching.
     #[serde(default = "ar")]
     pub model: String,
     /// How the gain is found.
     #[serde(default)]
     pub method: GainMethod,
-    /// Level change by a key for a normal step, decibels.
+    /// How much a key for a normal step changes the level, decibels.
     #[serde(default = "one_db")]
     #[schemars(range(min = 0.01, max = 20))]
     pub step_db: f64,
-    /// Level change by a key for a large step, decibels. A staircase also uses this step before its
-    /// first reversal.
+    /// How much a key for a large step changes the level, decibels. A staircase also uses this step
+    /// before its first reversal.
     #[serde(default = "four_db")]
     #[schemars(range(min = 0.01, max = 40))]
     pub large_step_db: f64,

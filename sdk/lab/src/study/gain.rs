@@ -18,7 +18,7 @@ pub enum GainKey {
     /// Weaker by a large step.
     MuchWeaker,
     /// While the level rises, this key means that the participant feels the texture. During the
-    /// matching, it means that the texture matches the real texture.
+    /// matching, this key means that the texture matches the real texture.
     Accept,
 }
 

@@ -22,8 +22,8 @@ pub enum Line {
     /// The start of a session. A session with a simulated clock has no such line, because this
     /// clock has no date.
     Session(SessionStart),
-    /// A key press while the participant raises the level of a texture until it can be felt, in the
-    /// training or in the gain matching.
+    /// A key press while the level of a texture rises, in the training or in the gain matching. The
+    /// level rises until the participant can feel the texture.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
@@ -54,7 +54,7 @@ pub struct Header {
     pub htex_answers: String,
     pub study: String,
     pub participant: String,
-    /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
+    /// BLAKE3 hashes, hexadecimal, of the study file and of all files that the study file names.
     pub files: BTreeMap<String, String>,
     pub device: DeviceUsed,
     /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`). Absent if the
@@ -89,7 +89,7 @@ pub struct Simulated {
 pub struct SessionStart {
     /// Date and time in UTC: `2026-11-25T10:25:25Z`.
     pub date: String,
-    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
+    /// Time, milliseconds, counted in the same way as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     pub device: DeviceUsed,
     /// Program and version.
@@ -105,18 +105,19 @@ pub struct DeviceUsed {
     pub adapter: String,
     /// Profile of the device; empty if none is used.
     pub profile: String,
-    /// All settings of the device, such as the gain of an amplifier, including those from the
-    /// profile and the defaults. Two kinds of settings are left out. The first are the names of
-    /// files to which a trial is played. The second is `buffer_ms` if the motion is not live: the
-    /// length of the buffer then makes no difference that a participant could feel.
+    /// All settings of the device, such as the gain of an amplifier. They include the settings from
+    /// the profile and the default values. Two kinds of settings are left out. The first kind is
+    /// file names: the files to which the samples of a trial are written. The second kind is
+    /// `buffer_ms`, if the motion is not live. In this case, a participant cannot feel the length
+    /// of the buffer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
-    /// Largest absolute value that the device accepts, in its unit (volts for a display). Absent
-    /// without a limit.
+    /// Largest absolute value that the device accepts, in the device's unit (volts for a display).
+    /// Absent without a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// Number of device units for one unit of the assets' quantity. Absent if device and assets
-    /// have the same quantity.
+    /// Number of device units that correspond to one unit of the assets' quantity. Absent if device
+    /// and assets have the same quantity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quantity_gain: Option<f64>,
 }
@@ -192,8 +193,8 @@ pub struct FeltFile {
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
-    /// How the speed or the force differed from the study's motion by more than 10 %, as phrases.
-    /// Absent if no difference was larger, or if the study sets no target.
+    /// Each phrase describes a difference of more than 10 % between the measured speed or force and
+    /// the study's motion. Absent if no difference was larger, or if the study sets no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
     /// Whether speed or force was measured and compared with the study's motion. Absent if neither
@@ -241,8 +242,8 @@ pub struct Answer {
     /// Levels of the samples that were written to the device. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// Number of lines of the kind `stopped` between this line and the last line of another kind:
-    /// how many times the trial was stopped before its end, for any reason.
+    /// How many times the trial was stopped before its end, for any reason: the number of lines of
+    /// the kind `stopped` directly before this line.
     #[serde(default)]
     pub stops: u32,
     /// How many earlier attempts of the trial failed because the device ran out of samples.
@@ -263,7 +264,7 @@ pub struct GainPress {
     pub key: GainKey,
     /// The gain after the key press, decibels relative to the maximum.
     pub gain_db: f64,
-    /// Whether the matching ended with this key press, so that `gain_db` is the gain of the texture
+    /// Whether the matching ended with this key press. If so, `gain_db` is the gain of the texture
     /// from now on.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub found: bool,
@@ -275,12 +276,13 @@ pub struct GainPress {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
     /// How many times the texture was stopped between the previous key press and this one. The stop
-    /// by the previous key press itself does not count.
+    /// that the previous key press caused does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS, in the assets' unit, that corresponds to the drive of the device.
+    /// Reference level: the RMS that is mapped to the device's drive voltage or preview level, in
+    /// the assets' unit.
     pub reference_rms: f64,
-    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
+    /// Time, milliseconds, counted in the same way as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
@@ -307,12 +309,13 @@ pub struct Rise {
     /// Levels of the samples that were written to the device before the key press.
     pub output: OutputLevels,
     /// How many times the texture was stopped between the previous key press and this one. The stop
-    /// by the previous key press itself does not count.
+    /// that the previous key press caused does not count.
     #[serde(default)]
     pub stops: u32,
-    /// RMS, in the assets' unit, that corresponds to the drive of the device.
+    /// Reference level: the RMS that is mapped to the device's drive voltage or preview level, in
+    /// the assets' unit.
     pub reference_rms: f64,
-    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
+    /// Time, milliseconds, counted in the same way as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
@@ -328,8 +331,8 @@ pub struct OutputLevels {
     pub peak: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Direct component: the largest absolute value of the mean over any 100 ms. The time before
-    /// the start counts as silence.
+    /// DC component: the largest absolute value of the mean over any window of 100 ms. The time
+    /// before the start counts as silence.
     pub direct: f64,
     /// Length, seconds.
     pub duration_s: f64,
@@ -353,7 +356,7 @@ pub struct Stop {
     /// Levels of the samples that were written to the device. Absent if the device was not opened.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// Time, milliseconds, counted as `at_ms` in lines of the kind `answer`.
+    /// Time, milliseconds, counted in the same way as `at_ms` in lines of the kind `answer`.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,

@@ -2,8 +2,8 @@
 //!
 //! The file `study.toml` describes a study ([`Study`]). This file determines the [`Plan`], which is
 //! the order of trials for every participant. A [`Session`] takes one participant through the plan
-//! and appends each answer to a file before the next trial begins. Everything else, such as the
-//! table of ratings ([`export`]), is computed from `study.toml` and the files of answers.
+//! and appends each answer to a file before the next trial begins. htex computes everything else,
+//! such as the table of ratings ([`export`]), from `study.toml` and the files of answers.
 //!
 //! The defaults come from the study in the paper (Methods, "Experiment"): 14 participants, five
 //! models, five repetitions, trials of 10 s, training, gain matching with AR, and similarity from 0
@@ -21,8 +21,8 @@
 //!    and flushes the line to disk.
 //! 4. `run`: plays trials, shows views and asks questions, through three traits: a rig (renderer
 //!    and device), an asker (terminal or page) and a clock. `felt` records the signal of a sensor
-//!    while a trial plays. The reader and the writer of the recording are the same as for guided
-//!    recordings.
+//!    while a trial plays. The code that reads the signal and writes the recording is the same as
+//!    for guided recordings.
 //! 5. `export`: makes the table of all ratings. `felt_spectra`: makes the table with the spectra of
 //!    the felt forces.
 

@@ -1,7 +1,8 @@
-//! The page of a session ([`crate::page`]), which asks the participant.
+//! The web page that asks the participant during a session ([`crate::page`]).
 //!
-//! Each view has a number, and an answer contains the number of the view that it answers. A second
-//! press of a key is therefore not counted, nor is a press for a view that is no longer shown.
+//! Each view has a number, and an answer contains the number of the view that it answers. Therefore
+//! a second press of a key does not count. A press for a view that is no longer shown does not
+//! count either.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -40,7 +41,7 @@ pub struct TouchMotion {
     pub is_down: bool,
 }
 
-/// Handle from which the motion of the finger on a page is read.
+/// A handle that reads the motion of the finger on a page.
 #[derive(Clone)]
 pub struct Touch(Arc<PageState>);
 
@@ -96,7 +97,7 @@ impl Page {
         self.served.address()
     }
 
-    /// Returns a handle from which the motion of the finger on the page is read.
+    /// Returns a handle that reads the motion of the finger on the page.
     pub fn touch(&self) -> Touch {
         Touch(Arc::clone(&self.asked))
     }

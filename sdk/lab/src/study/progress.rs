@@ -17,8 +17,8 @@ const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 /// The next step of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// A trial is rated by one attribute. The trial is played before the rating, unless it was just
-    /// played.
+    /// The participant rates one attribute of a trial. The trial is played before the rating,
+    /// unless the trial was just played.
     Rate(Phase, Trial, Attribute),
     /// The participant sets the level of a texture. In training, before the texture's first
     /// practice trial, the level rises until the participant feels the texture. In the gain phase,

@@ -91,8 +91,8 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     }
 }
 
-/// Checks the files, motion and device of a study by the rules for scenes. To check the files, each
-/// texture is opened with each model, in the same way as in the trials. `path` is the study file.
+/// Checks the files, motion and device of a study by the rules for scenes. To check the files,
+/// opens each texture with each model, in the same way as in the trials. `path` is the study file.
 /// `device` replaces settings of the study's own device; the default value changes nothing.
 pub fn check_files(
     study: &Study,

@@ -186,8 +186,7 @@ impl<'a> Session<'a> {
         }))
     }
 
-    /// Records a rating for the current step, together with a description of how its trial was
-    /// played.
+    /// Records a rating for the current step, and how the rated trial was played.
     ///
     /// # Errors
     /// [`LabError::File`], and [`LabError::Line`] if the current step does not accept this
@@ -273,8 +272,8 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records that the current stimulus was stopped before its end, with the levels that were
-    /// written to the device until then.
+    /// Records that the current stimulus was stopped before its end. Also records the levels that
+    /// were written to the device until then.
     ///
     /// # Errors
     /// Returns the errors of [`Self::rate`].

@@ -26,14 +26,15 @@ pub struct Stimulus {
     /// Gain relative to the maximum, decibels. `None` plays at the level that the study's device
     /// sets.
     pub gain_db: Option<f64>,
-    /// RMS, in the assets' unit, that corresponded to the drive of the device when the participant
-    /// set the gain. It is used only by devices whose `levels` setting is `own`.
+    /// Reference level at the time when the participant set the gain: the RMS that was mapped to
+    /// the device's drive voltage or preview level, in the assets' unit. Only devices whose
+    /// `levels` setting is `own` use this level.
     pub reference_rms: Option<f64>,
     /// File name, without extension, for the recording of the felt force. `None` if this force is
     /// not recorded.
     pub felt: Option<String>,
-    /// Name of the file to which the stimulus is written if the device writes files, such as
-    /// `rise-vinyl`, `training-0003`, `gain-vinyl`, `trial-0017`.
+    /// Name of the file for the stimulus, if the device writes files. Examples are `rise-vinyl`,
+    /// `training-0003`, `gain-vinyl` and `trial-0017`.
     pub file: String,
 }
 
@@ -63,9 +64,9 @@ pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
 }
 
 /// Applies a gain relative to the maximum to a scene's device. On a display, scales the drive
-/// (`drive_v`, or the display's limit). On a sound device, adds the gain to `level_dbfs`; on all
-/// other devices, to `gain_db`. Returns the drive of a display in volts, and `None` for other
-/// devices.
+/// (`drive_v`, or the display's limit). On a sound device, adds the gain to `level_dbfs`. On all
+/// other devices, adds the gain to `gain_db`. Returns the drive of a display in volts, and `None`
+/// for other devices.
 pub fn set_gain(
     device: &mut DeviceChoice,
     able: &Capabilities,

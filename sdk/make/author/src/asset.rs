@@ -31,8 +31,8 @@ pub struct FittedAsset {
     pub spectra: Vec<TextureSpectrum>,
     /// How much of the difference between a representation and the recorded spectra can be felt.
     /// There is one list for each representation, with one value for each of the representation's
-    /// conditions. The value is `None` at a condition that was not recorded but computed between
-    /// recorded conditions.
+    /// conditions. The value is `None` at a condition that was computed between recorded
+    /// conditions.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
@@ -56,7 +56,8 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     fit_asset_watched(takes, request, &mut |_| {})
 }
 
-/// Does the same as [`fit_asset`], and also calls `begins` with each model before it is fitted.
+/// Does the same as [`fit_asset`], and also calls `begins` with each model before the model is
+/// fitted.
 ///
 /// # Errors
 /// Returns the errors of [`fit_asset`].
@@ -144,9 +145,9 @@ fn assemble(
     }
 }
 
-/// Returns an asset with the given models. Each entry of `models` is a representation with its
-/// parameters, one list for each of the representation's conditions. Optional keys of the manifest,
-/// such as the licence and the law, are left out.
+/// Returns an asset with the given models. Each entry of `models` is a representation and its
+/// parameters: one list of values for each of the representation's conditions. Optional keys of the
+/// manifest, such as the licence and the law, are left out.
 pub fn new_asset(
     name: &str,
     quantity: Quantity,

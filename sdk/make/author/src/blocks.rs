@@ -1,4 +1,4 @@
-//! Repeatability: how much the spectra of different blocks of time differ within one texture.
+//! Repeatability: how much the spectra of one texture differ between blocks of time.
 //!
 //! Overlapping windows share samples. Suppose that every second window were averaged into one half
 //! and all other windows into the other half. Both halves would share samples, and the difference
@@ -31,7 +31,8 @@ pub(crate) struct Span {
 }
 
 /// The expected difference between the spectra of two recordings of one texture, decibels. It is
-/// the RMS of the difference between the spectra of odd and even blocks, divided by √2.
+/// computed from two spectra, one of the odd blocks and one of the even blocks: the RMS of their
+/// difference, divided by √2.
 ///
 /// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
 /// division by √2 corrects for this.

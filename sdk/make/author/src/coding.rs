@@ -13,7 +13,7 @@ const MOST_PLAIN: usize = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Coding {
-    /// Coded if the asset has more than eight conditions and its file becomes smaller.
+    /// Coded if the asset has more than eight conditions and coding makes the file smaller.
     #[default]
     Auto,
     /// Always coded.

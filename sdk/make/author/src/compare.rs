@@ -15,8 +15,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. If two recordings are compared, measures on rendered samples are
-    /// missing, because only representations can be rendered.
+    /// The measures of agreement. Measures on rendered samples are missing if two recordings are
+    /// compared, because only representations can be rendered.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.
@@ -40,8 +40,8 @@ pub struct FeltDifference {
 pub struct ComparedModel {
     /// Id of the model.
     pub model: String,
-    /// The held-out error that the asset states at its condition nearest to the recording's speed
-    /// and force. `None` if it states none.
+    /// The asset's held-out error, at the asset's condition nearest to the recording's speed and
+    /// force. `None` if it states none.
     #[serde(flatten)]
     pub held_out: Option<HeldOut>,
     #[serde(flatten)]

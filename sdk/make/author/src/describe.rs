@@ -9,13 +9,13 @@ use htex_play::{Representation, Texture};
 
 use crate::{FeltError, TextureSpectrum};
 
-/// Describes a texture for the index of a library: its spectrum at the default condition, the
-/// held-out error that the asset states and, if the asset keeps recorded spectra, the felt
-/// difference from these spectra.
+/// Describes a texture for the index of a library. The description contains the spectrum at the
+/// default condition and the held-out error that the asset states. If the asset keeps recorded
+/// spectra, the description also contains the felt difference from these spectra.
 ///
-/// All values are for the representation that an app with only the built-in models would play, so
-/// that the same textures give the same library on every machine. If no built-in model can play the
-/// texture, the description is empty.
+/// All values are for the representation that an app with only the built-in models would play. The
+/// same textures therefore give the same library on every machine. If no built-in model can play
+/// the texture, the description is empty.
 pub fn describe(asset: &Asset) -> Description {
     let texture = texture(asset);
     match played(&texture) {

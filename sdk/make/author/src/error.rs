@@ -300,8 +300,8 @@ pub enum AuthorError {
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     NoParameters,
-    /// In a texture made by hand, some conditions have a speed or a force, but not all conditions
-    /// have the same.
+    /// In a texture made by hand, some conditions have a speed or a force that other conditions
+    /// lack.
     #[error(
         "some conditions have only a speed or only a force; give both for every condition, or neither"
     )]
@@ -324,8 +324,8 @@ pub enum AuthorError {
     /// and the points stored before the error are still in it.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
-    /// No part of the recording can be held out to test a fit, because there are too few blocks of
-    /// time, or because the blocks are silent or equal.
+    /// No part of the recording can be held out to test a fit. There are too few blocks of time, or
+    /// the blocks are silent or equal.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
     /// A sweep of settings cannot use this value for this setting.

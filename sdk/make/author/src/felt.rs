@@ -22,14 +22,16 @@ pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 const SENSATION_EXPONENT: f64 = 0.3;
 
 /// Bound for the difference between two recordings of a surface, in multiples of the first
-/// recording's repeatability (a median). Nine out of ten second recordings are within this bound.
-/// Of 180 pairs of takes of a robot's fingertip on 20 materials, 94 % differed by at most 3.5
-/// times, and 89 % by at most 3 times the repeatability of the first take.
+/// recording's repeatability (repeatability is a median, not a bound). If a surface is recorded a
+/// second time, the second recording is within this bound in nine out of ten cases. We compared 180
+/// pairs of takes of a robot's fingertip on 20 materials. In 94 % of the pairs, the difference was
+/// at most 3.5 times the repeatability of the first take. In 89 %, it was at most 3 times the
+/// repeatability.
 pub const REPEATABILITY_BOUND: f64 = 3.5;
 
-/// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
-/// and the difference between them. Below the threshold nothing can be felt, so a level below 0 dB
-/// counts as 0 dB when the difference is computed.
+/// Sensation levels (levels relative to the detection threshold) of two spectra in third-octave
+/// bands, and the differences between these levels. Below the threshold nothing can be felt, so a
+/// level below 0 dB counts as 0 dB when the difference is computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Felt {
     /// Centre frequencies of the bands, hertz.
@@ -41,17 +43,17 @@ pub struct Felt {
     pub level_db: Vec<f64>,
     /// Difference of the levels above the threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// RMS of the differences in `error_db`, decibels. Only bands in which at least one spectrum is
-    /// above the threshold count. 0 if there is no such band.
+    /// RMS of the differences in `error_db`, decibels. Only bands count in which at least one
+    /// spectrum is above the threshold. 0 if there is no such band.
     pub error_rms_db: f64,
     /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
     /// Difference of the total levels above the threshold, decibels. The total level is computed
     /// from the energy of all bands together.
     pub total_error_db: f64,
-    /// RMS over the bands of the difference in sensation. The sensation in a band is the
-    /// displacement in multiples of the detection threshold, to the power of 0.3; at the threshold
-    /// it is 1.
+    /// RMS difference in sensation, over all bands. The sensation in a band is the ratio of the
+    /// displacement to the detection threshold, to the power of 0.3. At the threshold, the
+    /// sensation is 1.
     pub sensation_error_rms: f64,
 }
 
@@ -88,18 +90,19 @@ pub struct FeltError {
     #[serde(default)]
     pub sensation_error_rms: f64,
     /// Whether the recorded texture itself cannot be felt: all bands together are below the
-    /// detection threshold. Then the two answers below are false.
+    /// detection threshold. In this case, `below_difference_threshold` and `below_if_sensitive` are
+    /// false.
     #[serde(default)]
     pub below_detection_threshold: bool,
-    /// Whether the difference is too small to notice: in every band and in total, it is below the
-    /// difference threshold.
+    /// Whether the difference is too small to notice, i.e. below the difference threshold in every
+    /// band and in total.
     pub below_difference_threshold: bool,
     /// The same as `below_difference_threshold`, computed for a person with a sensitive finger and
     /// soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
     /// Whether the nine-band error is at most [`REPEATABILITY_BOUND`] times the recording's own
-    /// repeatability, so that a second recording could differ as much; false if the repeatability
-    /// is not known.
+    /// repeatability. A second recording could then differ from the first as much as the model
+    /// does. False if the repeatability is not known.
     pub within_repeatability: bool,
 }
 
@@ -124,8 +127,8 @@ impl FeltError {
         }
     }
 
-    /// Returns how the difference, or the texture itself, compares with the thresholds, as the end
-    /// of a sentence.
+    /// Returns a phrase that compares the difference, or the texture itself, with the thresholds.
+    /// The phrase can end a sentence.
     pub const fn verdict(&self) -> &'static str {
         if self.below_detection_threshold {
             "the texture itself cannot be felt"
@@ -136,8 +139,8 @@ impl FeltError {
         }
     }
 
-    /// Combines two results into a worst case. For each number, the result is the value further
-    /// from 0. A flag is true only if it is true in both results.
+    /// Combines two results into a worst case. Each number of the result is the one of the two
+    /// numbers that is further from 0. A flag is true only if it is true in both results.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
@@ -156,15 +159,17 @@ impl FeltError {
     }
 }
 
-/// Number of textures for which a model's error cannot be felt, because the error is below a
-/// listener's difference threshold, and number of textures that cannot be felt themselves. A separate count, `within_repeatability`, is the number of
-/// textures whose error is within the recording's own variation. This second count does not show
-/// what can be felt: it is higher if the recordings repeat less well.
+/// Counts of textures whose error cannot be felt because it is below a listener's difference
+/// threshold, and of textures that cannot be felt themselves. Another count,
+/// `within_repeatability`, is the number of textures whose error is within the recording's own
+/// variation. `within_repeatability` does not show what can be felt: the less well the recordings
+/// repeat, the higher this count is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
-    /// Textures that cannot be felt at all. The two counts below leave them out.
+    /// Textures that cannot be felt at all. `below_difference_threshold` and `below_if_sensitive`
+    /// leave these textures out.
     #[serde(default)]
     pub below_detection_threshold: usize,
     /// Textures whose difference is below the difference threshold.
@@ -188,8 +193,9 @@ impl FeltShare {
 }
 
 /// Compares what a listener can feel of two spectra on the same frequency grid: `reference` and
-/// `magnitude`. Magnitudes are first converted to displacements of the skin: forces through the
-/// skin's impedance, accelerations and velocities by integration.
+/// `magnitude`. Before the comparison, magnitudes are converted to displacements of the skin.
+/// Forces are converted through the skin's impedance, and accelerations and velocities by
+/// integration.
 ///
 /// ```
 /// use htex_author::{SpectrumRef, felt};

@@ -151,18 +151,19 @@ pub(crate) fn voice_fluctuation(
 /// How the fluctuation of a signal differs from the fluctuation of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct FluctuationDifference {
-    /// RMS difference of the modulation spectra, decibels. Of second takes of one surface, 95 % lie
-    /// within [`SECOND_TAKES_DB`].
+    /// RMS difference of the modulation spectra, decibels. If a surface is recorded twice, this
+    /// difference is at most the second value of [`SECOND_TAKES_DB`] in 95 % of cases.
     pub fluctuation_error_db: f64,
     /// Kurtosis of the recording and of the other signal; 3 for Gaussian noise.
     pub kurtosis: [f64; 2],
-    /// Mean correlation between the envelopes of wide bands, of the recording and of the other
-    /// signal. `None` if the band of the signal is too narrow.
+    /// Mean correlation between the envelopes of wide bands: first in the recording, then in the
+    /// other signal. `None` if the band of the signal is too narrow.
     pub envelope_correlation: [Option<f64>; 2],
 }
 
-/// In 148 pairs of second takes of one surface (a robot's fingertip, 3 s each), 95 % differed by at
-/// most this much: in third octaves and in the modulation spectrum, decibels.
+/// Differences that 95 % of 148 pairs of takes do not exceed, decibels: in third octaves, and in
+/// the modulation spectrum. The two takes of each pair are of the same surface (a robot's
+/// fingertip, 3 s each).
 pub const SECOND_TAKES_DB: [f64; 2] = [2.0, 3.4];
 
 impl FluctuationDifference {

@@ -1,21 +1,21 @@
 //! The level (RMS) stored with each representation.
 //!
-//! By default the level of a representation is the level of its recording. With `--level fitted`,
-//! it is the level of the model's own fit. On simulated surfaces, this level differs from the
-//! recording's level by up to 6 dB. The levels of sBeta and sSlope are too high, because these
-//! models are fitted to the largest bins: sBeta mainly to the ten largest peaks, sSlope to the
-//! largest bin. In a noisy estimate of a spectrum, the largest bins are higher than the true
-//! spectrum. The level of MFCC is too low because MFCC averages logarithms. For a model such as
-//! Bands, the level follows from the energies that the model stores. The descriptor of such a model
-//! states this ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the
-//! model's fit. sBeta and sSlope round their parameters in the same way as files before they
-//! compute the level.
+//! By default the level of a representation is the level of its recording. With `--level fitted`, a
+//! representation has the level of the model's own fit. On simulated surfaces, this level differs
+//! from the recording's level by up to 6 dB. The levels of sBeta and sSlope are too high, because
+//! these models are fitted to the largest bins. sBeta is fitted mainly to the ten largest peaks,
+//! and sSlope to the largest bin. In a noisy estimate of a spectrum, the largest bins are higher
+//! than the true spectrum. The level of MFCC is too low because MFCC averages logarithms. For a
+//! model such as Bands, the level follows from the energies that the model stores. The descriptor
+//! of such a model states this ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the
+//! level of the model's fit. Before sBeta and sSlope compute the level, they round their parameters
+//! in the same way as files do.
 //!
-//! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate,
-//! because the conversion to the player's rate removes up to half of the power near that frequency.
-//! For AR, the loss is up to 3.0 dB at 1000 Hz, which is half of AR's sample rate. The stored level
-//! compensates for this loss ([`LoadedModel::played_part`]), so that the texture is played at the
-//! level of the recording.
+//! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate.
+//! The reason is the conversion to the player's rate, which removes up to half of the power near
+//! half the model's rate. For AR, the loss is up to 3.0 dB at 1000 Hz, which is half of AR's sample
+//! rate. The stored level compensates for this loss ([`LoadedModel::played_part`]), so that the
+//! texture is played at the level of the recording.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};

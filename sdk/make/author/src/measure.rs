@@ -19,9 +19,9 @@ const SECONDS: f64 = 20.0;
 // The seed is always the same, so that measuring an asset again gives the same errors.
 const SEED: u64 = 1;
 
-/// Agreement of a spectrum with a reference. It consists of the errors in nine bands and of all
-/// measures that need only magnitudes (all except [`Measure::Felt`]). The paper's regression uses
-/// the same nine bands, but with standardised absolute differences.
+/// Agreement of a spectrum with a reference. An agreement consists of the errors in nine bands and
+/// of all measures that need only magnitudes (all except [`Measure::Felt`]). The paper's regression
+/// uses the same nine bands, but with standardised absolute differences.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
@@ -123,11 +123,12 @@ pub(crate) fn rounding_error_db(
     Ok(rms(&band_error_db(&energies(fitted)?, &energies(stored)?)))
 }
 
-/// Returns the magnitudes that would be measured in a recording of the played texture, at the
-/// reference's frequencies. For most models, these magnitudes are computed without random numbers
+/// Returns the magnitudes that a recording of the played texture would have, at the reference's
+/// frequencies. For most models, this function computes these magnitudes without random numbers,
 /// from the model's own magnitudes and the Hann window ([`LoadedModel::read_magnitude`]). This
 /// computation includes only the main lobe of the window, which is not enough for a model with
-/// spectral lines. For such a model, samples are rendered and measured (`rendered_spectrum`).
+/// spectral lines. For such a model, this function renders samples and measures their spectrum
+/// (`rendered_spectrum`).
 ///
 /// # Errors
 /// When the model refuses the parameters, or when it renders samples that are not finite.

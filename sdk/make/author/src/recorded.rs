@@ -1,11 +1,11 @@
 //! Playback of a recording: its segments are limited to the band and joined into a loop.
 //!
-//! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
-//! outside the band are removed, the ends of a segment are no longer zero, and a plain sum of the
-//! segments would have a step every 0.1 s. Therefore each segment is windowed once more before it
+//! The segments of a spectrum are windowed (Hann) and overlap by half. Removing the frequencies
+//! outside the band makes the ends of a segment nonzero. A plain sum of the segments would then
+//! have a step every 0.1 s. Therefore each segment is multiplied by the window once more before it
 //! is added. Dividing the sum by the sum of the squared windows gives back the recorded signal.
 //! Segments from different stretches have no signal in common. At a transition between two such
-//! segments, the sum is divided by the root of the sum of the windows' fourth powers, which
+//! segments, the sum is divided by the square root of the sum of the windows' fourth powers. This
 //! preserves the power. The last segment fades into the first segment in the same way, so that the
 //! loop has no seam.
 
@@ -49,8 +49,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// Returns the errors of [`segment_take`], and an error if the rate is not a multiple of 10 Hz,
-    /// not above twice the band's highest frequency, or above 192 kHz.
+    /// Returns the errors of [`segment_take`]. Also returns an error if the rate is not a multiple
+    /// of 10 Hz, is not above twice the band's highest frequency, or is above 192 kHz.
     pub fn new(
         take: &Take,
         options: &SpectrumOptions,

@@ -59,10 +59,10 @@ pub struct AssetRequest {
     pub models: Vec<ModelRequest>,
     pub spectrum: SpectrumOptions,
     pub level: Level,
-    /// What slid over the surface. `None`: a finger if all recordings are simulated, otherwise
-    /// unknown.
+    /// What slid over the surface. `None` means a finger if all recordings are simulated, and an
+    /// unknown contact otherwise.
     pub contact: Option<Contact>,
-    /// Exponents of the law that replace measured or assumed ones.
+    /// Exponents that replace the measured or assumed exponents of the law.
     pub law: Option<GivenLaw>,
     /// Models to try with their default options, in addition to `models`, when a representation has
     /// a large band error.
@@ -76,7 +76,7 @@ pub struct AssetRequest {
     pub keep_reference: bool,
     /// Whether the asset is coded.
     pub coding: Coding,
-    /// Whether to fit only the recorded conditions, and none that are computed from them.
+    /// Whether to fit only the recorded conditions, without conditions computed from them.
     pub recorded_only: bool,
     /// Options whose values differ from their defaults, to be stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
@@ -104,7 +104,7 @@ impl AssetRequest {
         self
     }
 
-    /// Sets the contact and the given exponents of the law, as metadata states them.
+    /// Sets the contact and the exponents that `metadata` gives for the law.
     #[must_use]
     pub fn with_law_of(mut self, metadata: &Metadata) -> Self {
         (self.contact, self.law) = (metadata.contact, metadata.law);

@@ -101,12 +101,13 @@ pub struct Segments {
     pub from_sweeps: bool,
     /// The detected sweeps, even if windows are used.
     pub sweeps: Vec<Sweep>,
-    /// Number of sweeps cut off by the recording's beginning or end, which are not read.
+    /// Number of sweeps that the recording's beginning or end cuts off. These sweeps are not read.
     pub cut_off: usize,
-    /// First samples of the segments that are left out because the motion differs from its target.
+    /// First samples of the segments that are left out because their motion differs from the
+    /// target.
     pub off_target: Vec<usize>,
-    /// Set if `auto` uses windows although there are sweeps, because the segments of the sweeps
-    /// would represent too little of the sliding.
+    /// Set if the recording has sweeps, but `auto` uses windows. The reason is that segments in the
+    /// sweeps would represent too little of the sliding.
     pub unread: Option<Unread>,
     /// The threshold that the signal exceeds in a sweep: the mean length of the signal vector, in
     /// the signal's unit.
@@ -175,7 +176,7 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
 }
 
 /// Returns for each sample whether the finger slides. The finger slides where the length of the
-/// signal vector, averaged over 50 ms, is at least half of its mean over the recording.
+/// signal vector, averaged over 50 ms, is at least half of the mean length over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
     let friction = Friction::new(recording);
     let slides = |at| friction.slides(friction.smooth(at));

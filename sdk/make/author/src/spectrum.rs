@@ -123,7 +123,8 @@ pub struct TextureSpectrum {
     pub signal_rate_hz: f64,
 }
 
-/// Band, frequencies and magnitudes of a spectrum: the part that fits and measures use.
+/// Band, frequencies and magnitudes of a spectrum. Fits and measures use only these parts of a
+/// spectrum.
 #[derive(Debug, Clone, Copy)]
 pub struct SpectrumRef<'a> {
     pub band: Band,

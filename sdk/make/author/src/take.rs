@@ -53,10 +53,9 @@ pub struct SegmentedTake {
 /// differs from the given condition by more than 10 % are left out.
 ///
 /// # Errors
-/// When the recording is too short, when its sample rate is too low, when no segment remains, when
+/// When the recording is too short, its sample rate is too low, or no segment remains. Also when
 /// the setup's response is zero or not finite in the band, or when a speed or force is out of
-/// range. If `strict` is true, there is also an error if the recording has findings that are errors
-/// or warnings.
+/// range. If `strict` is true, findings that are errors or warnings also cause an error.
 pub fn segment_take(
     take: &Take,
     options: &SpectrumOptions,

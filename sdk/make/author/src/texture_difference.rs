@@ -48,7 +48,7 @@ pub struct ModelDifference {
 /// How two representations differ at one motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DifferenceAt {
-    /// Speed, mm/s, and force, newtons, at which both were evaluated.
+    /// Speed (mm/s) and force (newtons) at which both representations were evaluated.
     pub speed_mm_s: f64,
     pub force_n: f64,
     /// Level of the second representation minus the level of the first, decibels; `None` if one of

@@ -2,13 +2,13 @@
 //! faster speed.
 //!
 //! If the contact is unknown, a player uses the same shape of the spectrum at every speed, and
-//! changes only the level. But on recorded strokes of fingertips, the level of high frequencies
-//! rises faster with the speed than the level of low ones: its exponent was about 0.7 + 0.28 log2(f
-//! / 250 Hz). This change of the exponent is called the tilt. If a texture was recorded at three
-//! speeds or more, the recordings themselves show the tilt. If it was recorded at one speed, half
-//! of the measured tilt is assumed, because materials differ: the tilt was 0.51 per octave for one
-//! material and 0.07 for another. Half of the tilt reduces the error for both
-//! (`docs/real-recordings.md`).
+//! changes only the level. But in recorded strokes of fingertips, the level of high frequencies
+//! rises faster with the speed than the level of low frequencies. At a frequency f, the exponent of
+//! the level was about 0.7 + 0.28 log2(f / 250 Hz). This change of the exponent is called the tilt.
+//! If a texture was recorded at three speeds or more, the recordings themselves show the tilt. If a
+//! texture was recorded at one speed, htex assumes half of the measured tilt, because materials
+//! differ. The tilt was 0.51 per octave for one material and 0.07 for another. Half of the tilt
+//! reduces the error for both materials (`docs/real-recordings.md`).
 //!
 //! The two conditions are stored like recorded conditions, so the player and the file format need
 //! no rule for the tilt. The level of the two conditions follows the law.

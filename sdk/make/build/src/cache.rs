@@ -1,6 +1,7 @@
-//! The cache of job results. A result is found by the key of its job. Entries are authenticated
-//! ([`StateFolder`]). An entry that another user wrote, or that a crash left incomplete, is not
-//! used; its job runs again. Entries are not flushed to disk one by one.
+//! The cache of job results. The cache finds a result by the key of its job. Entries are
+//! authenticated ([`StateFolder`]). The cache does not use an entry that another user wrote, or
+//! that a crash left incomplete. The job of such an entry runs again. Entries are not flushed to
+//! disk one by one.
 //!
 //! An entry that no texture uses any more stays for the time [`UNUSED`]. A user can therefore try a
 //! setting and undo the change without a new fit.

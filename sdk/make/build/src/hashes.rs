@@ -61,7 +61,7 @@ impl Stamp {
     /// Returns the stamp of a local file.
     ///
     /// # Errors
-    /// Errors of the system, or if the file has no time of change.
+    /// Returns errors of the system. Also returns an error if the file has no time of change.
     pub fn read(file: &Path) -> io::Result<Self> {
         Self::of_metadata(&file.metadata()?)
     }

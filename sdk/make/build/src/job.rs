@@ -83,7 +83,8 @@ pub struct Job {
     /// What kind of files the recordings are.
     #[serde(default)]
     pub kind: FileKind,
-    /// Settings with the values that files with signals do not contain, such as the full scale.
+    /// Settings for values that a haptic file with a signal does not contain, such as the full
+    /// scale.
     #[serde(default)]
     pub signal: SignalSettings,
     /// How the recordings are read. The setting `tracker` is not set, because each recording of the
@@ -101,15 +102,16 @@ pub struct Job {
     /// Number of plugins that are embedded in the asset; they are the last in `plugins`.
     pub embedded: usize,
     /// Location of the recipe, if it is remote. The recipe may name files on the server from which
-    /// it comes, but on no other server of this machine or network.
+    /// the recipe comes. It may not name files on any other server of this machine or of its
+    /// network.
     #[serde(default)]
     pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// The recording's name in reports and messages: the file's name, preceded by as many folders
-    /// as are needed to distinguish the texture's recordings.
+    /// The recording's name in reports and messages. It consists of the file's name, and of as many
+    /// folders before it as are needed to distinguish the texture's recordings.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
@@ -298,8 +300,8 @@ impl Job {
         self.recordings.iter().map(|r| r.file.hash.stamp.bytes).sum()
     }
 
-    /// Reads the recordings, fits the models, and returns the result with the asset. If a recording
-    /// cannot be used or a model fails, this is not an error; the result then has the outcome
+    /// Reads the recordings, fits the models, and returns the result with the asset. A recording
+    /// that cannot be used, or a model that fails, is not an error: the result then has the outcome
     /// [`Outcome::Refused`].
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! The result of a job and its encoding. The encoding is a line of JSON with the record, the
-//! lengths of the parts and a hash, followed by the parts (asset and sound).
+//! The result of a job and its encoding. The encoding begins with a line of JSON, which contains
+//! the record, the lengths of the parts and a hash. The parts (asset and sound) follow this line.
 
 use std::collections::BTreeMap;
 

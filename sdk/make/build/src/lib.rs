@@ -4,7 +4,7 @@
 //! file contains a signal, the build fits models to the signal. If the file contains the parameters
 //! of a texture, the build converts the file to an asset without a fit.
 //!
-//! A recipe is data and contains no code. Together with the files that it names, it determines the
+//! A recipe is data and contains no code. The recipe and the files that it names determine the
 //! result of the build. Each texture has a key. The key is the hash of everything that the
 //! texture's bytes depend on: the contents of its recordings, its settings, the program and the
 //! plugins. Results are stored by key. Because of the stored results, a killed build can continue,
@@ -14,7 +14,8 @@
 //! These modules lead from recordings to a library:
 //!
 //! 1. `recipe` and `plan` read a recipe and list the textures that it describes, each with its
-//!    recordings and settings. The command and the Python package have the same settings.
+//!    recordings and settings. The command and the Python package have the same settings as a
+//!    recipe.
 //! 2. `hashes` and `job` turn each texture into a job, which is data with a key.
 //! 3. `cache` looks up the key of each job. If no result is stored for the key, the job is pending.
 //!    Threads or a cluster (`htex.dask`) run the pending jobs.

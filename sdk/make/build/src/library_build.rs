@@ -54,7 +54,7 @@ pub struct BuildOptions {
     /// Whether to refuse to remove textures of the previous library.
     pub no_removals: bool,
     /// The URI to which the results are copied. If there is no previous library on this machine,
-    /// the library at this URI is used to find removed textures.
+    /// the build looks for removed textures in the library at this URI.
     pub published: Option<Location>,
     /// Whether to remove a stored result as soon as no texture uses it. If false, unused results
     /// stay for 30 days.
@@ -358,7 +358,7 @@ impl Build {
     ///
     /// # Errors
     /// If jobs are still pending, or if a file cannot be written. Also if a texture of the previous
-    /// library is left out although the options forbid removals; in this case, no file is written.
+    /// library is left out although the options forbid removals. In this case, no file is written.
     pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";

@@ -44,14 +44,14 @@ pub struct LibraryEdit {
     pub add_tags: Vec<String>,
     /// Tags to remove from each texture.
     pub remove_tags: Vec<String>,
-    /// A CSV file with metadata of single textures. The column `texture` has their names, and the
-    /// other columns have the names of the metadata.
+    /// A CSV file with metadata of single textures. The column `texture` contains the names of the
+    /// textures. Each other column is named after the metadata that it contains.
     pub table: Option<PathBuf>,
     /// Only textures that match all of these filters are removed or get new metadata.
     pub filters: Vec<Filter>,
     /// New metadata of the library itself; `None` to leave this metadata unchanged.
     pub library_metadata: Option<LibraryMetadata>,
-    /// Whether added and edited textures may state no licence.
+    /// Whether added and edited textures may lack a licence.
     pub allows_unlicensed: bool,
 }
 
@@ -97,8 +97,8 @@ impl LibraryEdit {
     ///
     /// # Errors
     /// - A file cannot be read or written.
-    /// - The library has no texture that should be removed or renamed, or that the table names.
-    /// - The library already has a texture with a new name.
+    /// - The library lacks a texture that the edit removes or renames, or that the table names.
+    /// - A new name is already the name of another texture in the library.
     /// - A changed texture would not be valid, or states no licence.
     ///
     /// After an error, the file at `output` is unchanged.

@@ -15,9 +15,9 @@ pub enum OnConflict {
     /// The merge ends with an error.
     #[default]
     Error,
-    /// The merged library gets the texture of the first of these libraries.
+    /// The merged library gets the texture from the first library that has this name.
     First,
-    /// The merged library gets the texture of the last of these libraries.
+    /// The merged library gets the texture from the last library that has this name.
     Last,
 }
 
@@ -47,8 +47,8 @@ impl LibraryMerge {
     ///
     /// # Errors
     /// - A library cannot be read, or the merged library cannot be written.
-    /// - Two libraries have different textures with the same name, unless [`Self::on_conflict`]
-    ///   chooses one of them. Two names that differ only in case are always an error.
+    /// - Two libraries have different textures with the same name, and [`Self::on_conflict`] does
+    ///   not choose one of them. Two names that differ only in case are always an error.
     ///
     /// After an error, the file at `output` is unchanged.
     pub fn run(&self, output: &Path, name: &str) -> Result<PackSummary, BuildError> {

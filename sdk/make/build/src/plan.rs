@@ -23,7 +23,7 @@ pub struct Plan {
     pub library: String,
     /// What the library says about itself.
     pub metadata: LibraryMetadata,
-    /// What happens to textures of the existing library that are not planned.
+    /// What happens to textures of the existing library that the plan does not contain.
     pub missing: MissingTextures,
     /// Largest number of textures that the library may lose.
     pub max_removed: Option<usize>,
@@ -40,7 +40,7 @@ pub struct PlannedTexture {
     pub recordings: Vec<PlannedRecording>,
     /// What kind of files the recordings are.
     pub kind: FileKind,
-    /// Settings of the texture. Paths in them are relative to the recipe.
+    /// Settings of the texture. Paths in the settings are relative to the recipe.
     pub settings: Settings,
     /// Metadata of the texture. Placeholders of templates are already replaced by values.
     pub metadata: Metadata,

@@ -99,7 +99,7 @@ impl Destination {
     }
 
     /// Tests whether a file can be written at the URI and removed again. Call this function before
-    /// fitting, so that such errors are found before hours of work. Without a URI, does nothing.
+    /// fitting. It finds such errors before hours of work. Without a URI, does nothing.
     ///
     /// # Errors
     /// If the file cannot be written or removed.
@@ -113,8 +113,8 @@ impl Destination {
     }
 
     /// Copies the results to the URI, if there is one. Only files that differ from the files at the
-    /// URI are copied: textures first, report and catalogue last. Files that an earlier build
-    /// copied to the URI and that this build has not made are removed from it. Returns the number
+    /// URI are copied: textures first, report and catalogue last. Also removes files from the URI,
+    /// if an earlier build copied them there and this build has not made them. Returns the number
     /// of copied files.
     ///
     /// # Errors

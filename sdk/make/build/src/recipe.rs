@@ -69,8 +69,8 @@ pub struct LibraryPart {
     /// their recordings are archived.
     #[serde(default)]
     pub missing: MissingTextures,
-    /// Largest number of textures that the library may lose. If it would lose more, the build changes
-    /// nothing and ends with an error.
+    /// Largest number of textures that the library may lose. If the library would lose more
+    /// textures, the build changes nothing and ends with an error.
     #[serde(default)]
     pub max_removed: Option<usize>,
 }
@@ -138,7 +138,7 @@ pub struct Settings {
     /// template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
-    /// Settings with the values that haptic files with signals do not contain, such as the full
+    /// Settings for values that a haptic file with a signal does not contain, such as the full
     /// scale.
     #[serde(flatten)]
     pub signal: SignalSettings,
@@ -205,8 +205,8 @@ pub struct Gates {
     /// difference below 1.584 dB (the difference threshold) is too small to notice. One number for
     /// all models, or a table with a number for each model.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest allowed repeatability value of a condition, decibels. This value is the RMS over
-    /// nine bands of the difference between odd and even blocks of time, divided by √2.
+    /// Largest allowed repeatability value of a condition, decibels. This value is the RMS
+    /// difference between odd and even blocks of time, over nine bands, divided by √2.
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that no recording may have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
@@ -216,7 +216,7 @@ pub struct Gates {
     /// motion or clipping.
     pub strict: Option<bool>,
     /// Whether every texture must state a licence. By default, textures from files of other haptic
-    /// formats must, and textures from recordings need not.
+    /// formats must state a licence, and textures from recordings need not state one.
     pub license: Option<bool>,
     /// Largest allowed size of the asset, bytes.
     pub max_bytes: Option<u64>,

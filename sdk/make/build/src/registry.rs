@@ -47,8 +47,8 @@ impl PluginKind {
         }
     }
 
-    /// Returns the kind of a plugin file, without running it: by the name of the function that
-    /// every model or every device exports.
+    /// Returns the kind of a plugin file, without running the file. The kind follows from the name
+    /// of the function that every model, or every device, exports.
     pub fn of(file: &[u8]) -> Option<Self> {
         let has = |name: &[u8]| file.windows(name.len()).any(|part| part == name);
         if has(b"htex_model_abi_version") {
@@ -73,7 +73,8 @@ pub struct Version {
     pub files: Vec<PlatformFile>,
 }
 
-/// A file of a version. Its signature is at the same place with `.sig` behind the name.
+/// A file of a version. The signature of the file is at the same place, under the file's name with
+/// `.sig` appended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformFile {
@@ -96,7 +97,7 @@ pub fn own_platform() -> String {
 }
 
 impl Entry {
-    /// Parses an entry, and checks it except for its files.
+    /// Parses an entry, and checks everything except the entry's files.
     ///
     /// # Errors
     /// Says which rule the entry breaks.
@@ -136,8 +137,9 @@ impl Entry {
         Ok(())
     }
 
-    /// Returns the newest version for this machine that `fits`, with its file: a module if there is
-    /// one, else a native library.
+    /// Returns the newest version that `fits` accepts and that has a file for this machine,
+    /// together with this file. The file is a module if the version has one, and otherwise a native
+    /// library.
     pub fn newest(
         &self,
         fits: impl Fn(&SemanticVersion) -> bool,

@@ -1,8 +1,8 @@
 //! Textures that the library contained before this build and no longer contains after the build.
 //!
 //! It is not an error if a glob matches fewer files than in the last build. If a folder is moved,
-//! the textures from its recordings are therefore removed from the library. The build reports the
-//! removals or, if the options forbid removals, stops with an error.
+//! the textures from recordings in this folder are therefore removed from the library. The build
+//! reports the removals or, if the options forbid removals, stops with an error.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The report of a build: `build-report.json`. The report contains no times and no folders, so
-//! equal builds have equal reports. The only exception is the list of removed textures, which also
-//! depends on the earlier build.
+//! equal builds have equal reports. The exceptions are the lists of removed and kept textures,
+//! which also depend on the earlier build.
 
 use std::collections::BTreeMap;
 
@@ -25,8 +25,8 @@ pub struct Report {
     pub report: String,
     /// Program and version that made the build.
     pub program: String,
-    /// The error that ended the build, line by line; empty if the build succeeded. In this case,
-    /// all other fields are from the report of the earlier build, if there is one.
+    /// The error that ended the build, line by line; empty if the build succeeded. If there is an
+    /// error, all other fields come from the report of the earlier build, if such a report exists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library that the build made.
@@ -35,13 +35,14 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Names of textures that stay in the library as an earlier build made them, because the recipe
-    /// no longer makes them and says that they stay.
+    /// Names of textures that the recipe no longer makes but keeps in the library, as an earlier
+    /// build made them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<String>,
-    /// For each model (by id), two counts of textures in the library. The first counts textures
-    /// whose difference from the recordings is below the difference threshold at all conditions.
-    /// The second counts textures whose difference is within the variation of their recordings.
+    /// For each model (by id), counts of textures in the library. `below_difference_threshold`
+    /// counts textures whose difference from the recordings is below the difference threshold at
+    /// all conditions. `within_repeatability` counts textures whose difference is within the
+    /// variation of their recordings.
     pub felt_shares: BTreeMap<String, FeltShare>,
     /// For each code of a finding, the textures with this finding.
     pub findings: BTreeMap<String, FindingShare>,
@@ -92,7 +93,7 @@ pub struct TextureReport {
 pub enum Status {
     /// The texture is in the library.
     Built,
-    /// The texture misses a gate, or could not be fitted.
+    /// The texture does not meet the requirement of a gate, or could not be fitted.
     LeftOut,
 }
 
@@ -107,7 +108,7 @@ pub struct RecordingReport {
     pub blake3: String,
 }
 
-/// A gate that a texture misses.
+/// A gate whose requirement a texture does not meet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MissedGate {
     /// The key of the gate in the recipe, or `fit` if the texture could not be fitted.
@@ -145,8 +146,8 @@ pub struct AssetReport {
     pub force_n: Option<[f64; 2]>,
     /// Smallest number of segments of a condition; 0 for a texture that was imported without a fit.
     pub segments: usize,
-    /// Largest repeatability value of a condition, decibels. This value is the RMS over nine bands
-    /// of the difference between odd and even blocks of time, divided by √2. Errors near or below
+    /// Largest repeatability value of a condition, decibels. This value is the RMS difference
+    /// between odd and even blocks of time, over nine bands, divided by √2. Errors near or below
     /// this value are within the recordings' own variation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
@@ -167,8 +168,8 @@ pub struct AssetReport {
     pub warnings: Vec<String>,
     /// The recorded spectrum of the first condition. For a texture that was imported without a fit,
     /// this is the spectrum of the default condition. The spectrum has 48 points evenly spaced in
-    /// log frequency. The value 63 stands for the largest magnitude, and 0 for 40 dB below it or
-    /// less.
+    /// log frequency. The value 63 stands for the largest magnitude. The value 0 stands for all
+    /// magnitudes that are at least 40 dB below the largest.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
 }

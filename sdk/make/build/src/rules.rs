@@ -1,4 +1,4 @@
-//! The rules of recipes, in one table.
+//! The table of all rules for recipes.
 
 use htex_base::finding::rule_table;
 

@@ -1,10 +1,10 @@
-//! What a build stores for the next build: the folder `.htex-build` in the folder of the results.
+//! What a build stores for the next build, in the folder `.htex-build` inside the output folder.
 //!
 //! A user may have received the folder of the results from somebody else. Its `.htex-build` could
 //! contain false fits, false hashes of files, or a false list of published files. Therefore each
-//! file in `.htex-build` begins with a hash of its name and content, keyed with a key of this user
-//! ([`htex_base::files::Key`]). A file without a valid hash is ignored, and the build makes the
-//! file again. If there is no folder in which to store the user's key, this process uses a
+//! file in `.htex-build` begins with a keyed hash of its name and content. The key belongs to this
+//! user ([`htex_base::files::Key`]). A file without a valid hash is ignored, and the build makes
+//! the file again. If there is no folder in which to store the user's key, this process uses a
 //! temporary key.
 
 use std::fs::File;

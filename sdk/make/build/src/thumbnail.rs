@@ -10,9 +10,9 @@ const RANGE_DB: f64 = 40.0;
 /// Number of steps in that range.
 const STEPS: f64 = 63.0;
 
-/// A spectrum with 48 points, evenly spaced in log frequency over the spectrum's band. The value 63
-/// is the largest magnitude of the spectrum. The value 0 is a magnitude at least 40 dB below the
-/// largest.
+/// A spectrum with 48 points, evenly spaced in log frequency over the spectrum's band. The largest
+/// magnitude of the spectrum has the value 63. A magnitude that is at least 40 dB smaller has the
+/// value 0.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Thumbnail(pub Vec<u8>);

@@ -1,14 +1,14 @@
 //! Reads and writes Android's `VibrationEffect` as JSON, and writes it as Kotlin code. Each file
-//! describes an effect three times: as a waveform of levels, and as the two kinds of envelope of
-//! API level 36.
+//! contains one effect in three forms: a waveform of levels, and the two kinds of envelope of API
+//! level 36.
 //!
-//! The rules that are checked come from Android's documentation. A waveform has timings in
-//! milliseconds, and amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states the shortest
-//! duration of a control point, and the largest number of points in an envelope, that a device
-//! supports. Every device supports at least 16 points of 20 ms to 1 s. An envelope of
-//! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
-//! relative to the strongest vibration at the frequency. The JSON format is this project's own,
-//! because Android has no file format for effects.
+//! The checks follow Android's documentation. A waveform has timings in milliseconds, and
+//! amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states two limits of a device: the
+//! shortest duration of a control point, and the largest number of points in an envelope. Every
+//! device supports at least 16 points of 20 ms to 1 s. An envelope of `BasicEnvelopeBuilder` ends
+//! at the intensity 0. An amplitude of `WaveformEnvelopeBuilder` is relative to the strongest
+//! vibration that the device can play at the point's frequency. The JSON format is this project's
+//! own, because Android has no file format for effects.
 
 use htex_format::Rights;
 use serde::{Deserialize, Serialize};
@@ -143,8 +143,8 @@ impl Android {
         }
     }
 
-    /// Checks that a device accepts the envelopes, i.e. that they do not have too many control
-    /// points, and that no point is too short.
+    /// Checks that a device accepts the envelopes: no envelope may have too many control points,
+    /// and no point may be too short.
     ///
     /// # Errors
     /// When the device would refuse an envelope or a point. The fault names this envelope or point.

@@ -18,9 +18,9 @@ impl Point {
 }
 
 /// Returns the value of a curve at a time, or `None` if the curve has no points. The value is
-/// interpolated linearly between points. Before the first point, the curve has the value of the
-/// first point; after the last point, it has the value of the last point. If several points have
-/// the same time, only the last of these points is used.
+/// interpolated linearly between points. Before the first point, the curve has this point's value.
+/// After the last point, the curve has the last point's value. If several points have the same
+/// time, only the last of these points is used.
 ///
 /// ```
 /// use htex_exchange::{Point, value_at};
@@ -68,8 +68,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns a curve with fewer points. Points that lie within `tolerance` of the straight line
-/// between the remaining points are left out (Ramer 1972; Douglas & Peucker 1973).
+/// Returns a curve with fewer points. Leaves out each point that lies within `tolerance` of the
+/// straight line between the remaining points (Ramer 1972; Douglas & Peucker 1973).
 #[must_use]
 pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     let mut keeps = vec![false; curve.len()];

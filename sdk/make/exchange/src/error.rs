@@ -47,7 +47,7 @@ impl Fault {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExchangeError {
-    /// No format that can be imported has this extension.
+    /// This extension belongs to no format that can be imported.
     #[error("{file}: no format that is read has this extension; there are {there}")]
     UnknownFormat {
         file: String,
@@ -133,7 +133,7 @@ pub struct Missing {
 }
 
 impl ExchangeError {
-    /// Returns the message with the names that a program gives to settings. `named` converts a
+    /// Returns the message, with each setting named as in the calling program. `named` converts a
     /// keyword such as `full_scale` to the name in this program.
     ///
     /// ```

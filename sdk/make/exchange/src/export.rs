@@ -36,8 +36,9 @@ pub struct Export<'a> {
     pub rate_hz: Option<f64>,
     /// How an `.hjif` file codes the texture; by default [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// Extension of the file to write, for formats with several kinds of file, such as JSON and
-    /// Kotlin, or `.gltf` and `.glb`. If `None`, the format's first extension is used.
+    /// Extension of the file to write. It selects the kind of file if the format has several kinds,
+    /// such as JSON and Kotlin, or `.gltf` and `.glb`. If `None`, the format's first extension is
+    /// used.
     pub extension: Option<&'a str>,
     /// The bytes of the asset's file. If the format stores the asset itself, the exported file
     /// contains these bytes unchanged. If `None`, the asset is encoded again.

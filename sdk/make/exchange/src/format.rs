@@ -53,7 +53,8 @@ pub enum Reads {
     Map,
 }
 
-/// The function that reads a signal whose frequencies are positions in an actuator's range.
+/// The function that reads a signal from a file that gives frequencies as positions in an
+/// actuator's range.
 pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
 /// The function that reads a signal.
 pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
@@ -194,8 +195,9 @@ impl Format {
         self.check("import", takes.unwrap_or_default(), given)
     }
 
-    /// Checks that an export accepts the given settings, which are keywords such as `full_scale`. A
-    /// stroke determines the motion and the duration, so settings for these do not apply with it.
+    /// Checks that an export accepts the given settings, which are keywords such as `full_scale`.
+    /// If the export follows a stroke, settings of motion and duration do not apply, because the
+    /// stroke determines both.
     ///
     /// # Errors
     /// When a setting does not apply; the error names the first such setting.

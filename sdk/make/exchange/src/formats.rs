@@ -114,8 +114,8 @@ impl Format {
     /// Finds the format that imports a file, by the file's extension.
     ///
     /// # Errors
-    /// When no format that can be imported has the extension. The error lists the formats that can
-    /// be imported.
+    /// When the extension belongs to no format that can be imported. The error lists the formats
+    /// that can be imported.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
         let extension =
             file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();

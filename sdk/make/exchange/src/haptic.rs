@@ -4,10 +4,11 @@
 //!
 //! The code follows the published specification (*.haptic File Specification 1.0*,
 //! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As the specification requires, a
-//! frequency point after the end of the amplitude envelope is an error. The only exception is the
-//! last frequency point if the line that leads to it crosses this end, because earlier editors
-//! wrote such points. Frequencies are positions in an actuator's range, so a profile is needed to
-//! convert them to hertz. Without frequency points, the frequency is 0.5.
+//! frequency point after the end of the amplitude envelope is an error. There is one exception,
+//! because earlier editors wrote such points: the last frequency point may lie after this end if
+//! the frequency point before it lies before this end. A frequency in the file is a position in an
+//! actuator's frequency range, so a profile is needed to convert it to hertz. Without frequency
+//! points, the frequency is 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -215,8 +216,8 @@ impl Haptic {
 
     /// Makes a file from a vibration whose levels are amplitudes. A transient becomes the emphasis
     /// of an amplitude point. If there is no amplitude point at the transient's time, a point is
-    /// added. A transient before the start is moved to the start, and a transient after the end to
-    /// the end.
+    /// added. A transient before the start is moved to the start, and a transient after the end is
+    /// moved to the end.
     #[must_use]
     pub fn from_pattern(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();

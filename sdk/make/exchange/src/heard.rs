@@ -1,4 +1,4 @@
-//! Plays what is exported: an asset at a condition or along a stroke, or a scene. The result
+//! Plays an asset at a condition or along a stroke, or plays a scene, for an export. The result
 //! consists of the samples, and of an envelope with one value for each block of samples.
 
 use htex_author::threshold_magnitude;
@@ -212,8 +212,9 @@ impl Playing<'_> {
 impl Path {
     /// Makes the path of a finger that moves at one speed (mm/s) and force (N). If one of the
     /// values is missing, it comes from the default condition of the representation with this
-    /// model. If that condition does not state it, it comes from the paper (80 mm/s, 0.4 N). If
-    /// both values are missing, the path is the asset's default condition.
+    /// model. If the default condition does not state the value either, the value comes from the
+    /// paper (80 mm/s, 0.4 N). If both values are missing, the path is the asset's default
+    /// condition.
     ///
     /// # Errors
     /// When the asset has no such representation.

@@ -3,9 +3,9 @@
 //! How a file is imported depends on its format. A HaTT file contains units, speeds and forces, so
 //! it is converted to an asset without a fit. A glTF file contains an asset. An image is converted
 //! to an asset with the full scale and the condition that the user gives. All other files contain a
-//! signal between -1 and 1 without units, speed and force. Such a signal becomes a recording with
-//! the full scale and the condition that the user gives, and models are fitted to this recording. A
-//! signal that is shorter than a few seconds is repeated before the fit.
+//! signal between -1 and 1, and state no unit, speed or force. Such a signal becomes a recording
+//! with the full scale and the condition that the user gives. Models are then fitted to this
+//! recording. A signal that is shorter than a few seconds is repeated before the fit.
 
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
@@ -56,8 +56,8 @@ pub struct ImportedAsset {
     /// The bytes of the asset's file. `None` if the imported file does not contain the asset, or if
     /// the given metadata changes the asset.
     file: Option<Vec<u8>>,
-    /// How much of the difference from the signal a finger can feel: one list for each
-    /// representation, with one value for each condition. Empty if the import needs no fit.
+    /// Difference from the signal, as a finger would feel it: one list for each representation,
+    /// with one value for each condition. Empty if the import needs no fit.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// Ids of models that could not be fitted, each with the reason. Empty if the import needs no
     /// fit.
@@ -71,9 +71,9 @@ pub struct ImportedAsset {
 /// Imports a file as an asset. `file` is the file's name; its extension determines the format.
 ///
 /// # Errors
-/// When no format has the extension, when the format does not accept a given setting, when a value
-/// is in neither the file nor the settings, when the file is invalid (the error names the place),
-/// or when no model can be fitted.
+/// When no format has the extension, when the format does not accept a given setting, when both the
+/// file and the settings lack a necessary value, when the file is invalid (the error names the
+/// place), or when no model can be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -245,9 +245,9 @@ pub fn recording_of(
 }
 
 /// Fits models to signals that [`recording_of`] returned, and makes an asset. Spectra are computed
-/// from evenly spaced time windows. The full scale is stored in the provenance. The conditions have
-/// no repeatability, because a rendered and repeated file does not show how much two touches would
-/// differ.
+/// from evenly spaced time windows. The full scale is stored in the provenance. The conditions
+/// state no repeatability, because a file that is rendered and repeated does not show how much two
+/// touches would differ.
 ///
 /// # Errors
 /// Returns the errors of [`fit_asset`].

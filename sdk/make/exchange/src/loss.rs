@@ -1,5 +1,5 @@
-//! Measures the loss of an export. The written file is read back, the actuator's vibration is
-//! computed with the profile, and this vibration is compared with the asset's own samples.
+//! Measures the loss of an export. It reads the written file back, computes the actuator's
+//! vibration with the profile, and compares this vibration with the asset's own samples.
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
@@ -19,8 +19,8 @@ use crate::profile::{Kind, Profile};
 #[non_exhaustive]
 pub struct Loss {
     /// Difference between the vibration that the actuator plays from the file and the asset's own
-    /// samples. For the comparison, the actuator's acceleration is converted to the asset's unit in
-    /// such a way that equal values would feel the same.
+    /// samples. For the comparison, the actuator's acceleration is converted to the asset's unit so
+    /// that equal values feel equally strong.
     #[serde(flatten)]
     pub difference: Difference,
     /// Level of the vibration that the actuator plays, relative to the asset's level, decibels.

@@ -161,8 +161,8 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
 }
 
 /// Combines patterns into one, for formats with a single envelope. At each time, the level and
-/// frequency of the strongest pattern are used. All transients are kept. Levels are converted to
-/// the exponent 1 at the points. Between points, the converted levels are straight lines.
+/// frequency of the strongest pattern are used. All transients are kept. At each point, the level
+/// is converted to the exponent 1. Between points, the converted level is interpolated linearly.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();

@@ -31,9 +31,9 @@ pub(crate) const PITCH: Missing =
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
-/// Reads a file, and returns the values that the user must give for an import because the file does
-/// not contain them. The result is empty for a file that contains or fully describes an asset.
-/// `file` is the file's name.
+/// Reads a file, and returns the values that the file lacks and that the user must therefore give
+/// for an import. The result is empty for a file that contains or fully describes an asset. `file`
+/// is the file's name.
 ///
 /// # Errors
 /// When no format has the file's extension, or the file is invalid. The error names the place.
@@ -68,8 +68,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns the values that files of this format do not contain, or do not always contain. For
-    /// images, this includes the distance between pixels, because only some images contain it.
+    /// Returns the values that some or all files of this format lack. For images, the result
+    /// includes the distance between pixels, because only some images state it.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {

@@ -3,9 +3,9 @@
 //!
 //! The profiles are data in the crate (`profiles.toml`). A resonant actuator is modelled as a
 //! driven oscillator. At a frequency `f`, the oscillator's strongest vibration is `strongest_m_s2`
-//! times its response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`. Outside its frequency range, it plays
-//! nothing. A motor with a rotating mass is controlled only by its level: the frequency follows the
-//! level, and the acceleration grows with the square of the frequency.
+//! times its response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`. The actuator plays nothing outside its
+//! frequency range. A motor with a rotating mass is controlled only by its level: the frequency
+//! follows the level, and the acceleration grows with the square of the frequency.
 
 use std::sync::LazyLock;
 
@@ -103,8 +103,8 @@ impl Profile {
         ]
     }
 
-    /// Returns the fraction of the actuator's strongest acceleration that it reaches at a
-    /// frequency, 0 to 1. Outside the actuator's range, the fraction is 0.
+    /// Returns the largest acceleration that the actuator reaches at a frequency, as a fraction of
+    /// its strongest acceleration, 0 to 1. Outside the actuator's range, the fraction is 0.
     #[must_use]
     pub fn response(&self, hertz: f64) -> f64 {
         if !(self.low_hz.value..=self.high_hz.value).contains(&hertz) {

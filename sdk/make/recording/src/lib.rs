@@ -13,9 +13,10 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! An existing library reads a format if that library validates its input. For all other formats,
-//! this crate has its own readers. All readers skip columns that are not used. If a file states a
-//! size that is larger than its contents, no reader allocates memory for the stated size.
+//! This crate uses an existing library for a format only if the library validates its input. For
+//! all other formats, this crate has its own readers. All readers skip columns that are not used.
+//! If a file states a size that is larger than its contents, no reader allocates memory for the
+//! stated size.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -79,8 +80,8 @@ use error::Fault;
 use follow::follow;
 use input::{InputFile, file_name};
 
-/// Reads a recording. The kind of file is detected by its first bytes, or by its extension if it
-/// has no known signature.
+/// Reads a recording. The reader detects the kind of a file by the file's first bytes, or by its
+/// extension if the first bytes are not a known signature.
 ///
 /// The recording's warnings list assumed units, gaps in time and unused columns.
 ///

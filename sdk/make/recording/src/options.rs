@@ -16,7 +16,7 @@ pub struct ReadOptions {
     /// precedence over the times and over the file's own rate. For a WAV or FLAC file, a given rate
     /// must equal the file's rate.
     pub rate_hz: Option<f64>,
-    /// Roles of columns. Columns that are not in the map are assigned by their names.
+    /// Roles of columns. A column that is not in the map gets its role from its name.
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,

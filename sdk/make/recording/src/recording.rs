@@ -66,15 +66,16 @@ pub enum RecordingError {
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
-    /// The file that the recording was read from. The provenance of an asset stores its hash.
+    /// The file that the recording was read from. An asset's provenance stores the hash of this
+    /// file.
     pub file: RecordedFile,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
     /// Quantity of the axes.
     pub quantity: Quantity,
     /// The texture's signal in the quantity's unit, one list of samples for each axis. The axes are
-    /// perpendicular. A lateral force has at most two, a normal force one, and an acceleration,
-    /// velocity or displacement at most three.
+    /// perpendicular. A lateral force has one or two axes, a normal force has one, and an
+    /// acceleration, velocity or displacement has up to three.
     pub axes: Vec<Vec<f64>>,
     /// Normal force, newtons, with a positive mean.
     pub normal_n: Option<Vec<f64>>,
@@ -115,9 +116,10 @@ impl Recording {
     /// unit.
     ///
     /// # Errors
-    /// Returns an error if the rate is not above 0 and at most [`MAX_RATE_HZ`], or if there are no
-    /// axes or more axes than the quantity can have. Also returns an error if the axes have fewer
-    /// than two samples, differ in length, or contain NaN, infinity or a magnitude above 1e12.
+    /// Returns an error if the rate is not above 0 or exceeds [`MAX_RATE_HZ`], if there are no
+    /// axes, or if there are more axes than the quantity can have. Also returns an error if the
+    /// axes have fewer than two samples, differ in length, or contain NaN, infinity or a magnitude
+    /// above 1e12.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -257,8 +259,8 @@ impl Recording {
         }
     }
 
-    /// Returns the name by which messages and the pointers of findings refer to an axis, such as
-    /// `lateral_x` or `signal`.
+    /// Returns the name of an axis in messages and in the pointers of findings, such as `lateral_x`
+    /// or `signal`.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {

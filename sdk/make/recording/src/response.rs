@@ -33,8 +33,8 @@ pub struct SetupResponse {
 
 impl SetupResponse {
     /// Returns the real and the imaginary part of the response at a frequency in hertz. Magnitude
-    /// and unwrapped phase are interpolated linearly in frequency, and constant below the first
-    /// frequency and above the last.
+    /// and unwrapped phase are interpolated linearly in frequency. Below the first frequency and
+    /// above the last frequency, they are constant.
     ///
     /// ```
     /// # use htex_recording::SetupResponse;
@@ -77,8 +77,8 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number is written with the
-    /// fewest digits from which the same floating-point number can be read back.
+    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number is written with as few
+    /// digits as possible, so that reading it back gives the same floating-point number.
     ///
     /// # Errors
     /// Returns an error if the writer fails.
@@ -92,8 +92,8 @@ impl SetupResponse {
     }
 }
 
-/// The frequency ranges in which dividing a spectrum by the setup's response raises the spectrum by
-/// more than 10 dB.
+/// The frequency ranges in which the setup's response is so weak that division by it raises a
+/// spectrum by more than 10 dB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RaisedRanges {
     /// For each range, its lowest and highest frequency in hertz, and its largest gain in decibels.

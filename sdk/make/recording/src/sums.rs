@@ -1,7 +1,7 @@
-//! Running sums of a signal, from which the mean of any part takes only two look-ups.
+//! Running sums of a signal, which give the mean of any part with only two look-ups.
 
-/// Running sums of a signal. For each sample there is the sum of all samples before it. The last
-/// entry is the sum of all samples.
+/// Running sums of a signal. The entry at index i is the sum of all samples before sample i. The
+/// last entry is the sum of all samples.
 pub struct Sums(Vec<f64>);
 
 impl Sums {

@@ -17,8 +17,8 @@ pub struct Tracker {
     pub path: PathBuf,
     /// The content of the file. If it is `None`, the reader opens the file at `path`.
     pub bytes: Option<Arc<[u8]>>,
-    /// Roles of the file's columns: time, x, y, speed. Columns that are not in the map are assigned
-    /// by their names.
+    /// Roles of the file's columns: time, x, y, speed. A column that is not in the map gets its
+    /// role from its name.
     pub map: Option<ColumnMap>,
 }
 
@@ -30,7 +30,7 @@ impl Tracker {
         Self { path: path.into(), bytes: None, map: None }
     }
 
-    /// Provides the content of the file, so that the reader does not open `path` and uses it only
+    /// Provides the content of the file. The reader then does not open `path`, and uses `path` only
     /// as the file's name.
     #[must_use]
     pub fn with_bytes(mut self, bytes: impl Into<Arc<[u8]>>) -> Self {

@@ -11,9 +11,10 @@ const REACH_S: f64 = 0.05;
 /// The velocity is the slope of the position, averaged with a triangular window of 100 ms. Between
 /// rows, the position is interpolated linearly. A constant velocity is computed exactly, even if
 /// the rows are not evenly spaced. A 60 Hz tracker that repeats its last value does not disturb the
-/// result. The velocity is constant within 50 ms of the first and of the last row, and outside
-/// these rows. The unit of the velocity is the position's unit per second. The function computes
-/// the velocity from the integral of the position, as its second difference over steps of 50 ms.
+/// result. The velocity is constant until 50 ms after the first row, and again from 50 ms before
+/// the last row. The unit of the velocity is the position's unit per second. The function
+/// integrates the position and computes the velocity as the second difference of this integral,
+/// over steps of 50 ms.
 ///
 /// ```
 /// # use htex_recording::velocity;

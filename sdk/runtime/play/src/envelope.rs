@@ -14,7 +14,7 @@ use crate::Error;
 /// Largest number of bands in an envelope.
 pub const MOST_BANDS: usize = 32;
 
-/// Level and mean frequency of what a voice played since the last call of
+/// Level and mean frequency of the samples that a voice played since the last call of
 /// [`Voice::envelope`](crate::Voice::envelope). Effects, gain and limiter are included.
 ///
 /// ```no_run

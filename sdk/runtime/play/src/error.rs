@@ -152,8 +152,8 @@ pub enum Error {
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
     Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
-    /// The conditions to bake do not form a grid, because a combination of one of their speeds and
-    /// one of their forces is missing.
+    /// The conditions to bake do not form a grid: a combination of one of the speeds and one of the
+    /// forces is missing.
     #[cfg(feature = "bake")]
     #[error(
         "no condition at {speed_mm_s} mm/s and {force_n} N: the conditions are all combinations of their speeds and \

@@ -94,8 +94,8 @@ impl Default for Effects {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Interval {
-    /// The asset does not state this speed or force for every condition, or all its values are 0.
-    /// The speed or force of the finger then has no effect.
+    /// The asset does not state this speed or force for every condition, or all stated values are
+    /// 0. The speed or force of the finger then has no effect.
     Unknown,
     /// The conditions have one value, or several values between which the texture is interpolated.
     Between {
@@ -307,7 +307,8 @@ pub enum Reach {
     /// The model receives the motion and determines frequencies and level itself
     /// ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The texture is played as at the nearest recorded value, and then scaled by the asset's law.
+    /// The voice plays the texture as at the nearest recorded value, and then scales it by the
+    /// asset's law.
     Outside {
         /// The requested value, in mm/s or newtons.
         asked: f64,

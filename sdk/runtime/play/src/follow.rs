@@ -1,4 +1,5 @@
-//! The effects of a motion on a voice's samples: reading speed, gain and silence.
+//! The effects of a motion on a voice's samples: the speed at which the texture is read, the gain,
+//! and silence.
 
 use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;

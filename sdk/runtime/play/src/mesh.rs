@@ -41,8 +41,9 @@ const ON_SIDE: f64 = 1e-9;
 /// that condition's parameters without interpolation.
 const NO_WEIGHT: f64 = 1e-12;
 
-/// The weights with which a motion mixes up to three conditions. The weights sum to one. They are
-/// ordered by ascending speed, and conditions with equal speeds by ascending force.
+/// The weights with which up to three conditions are mixed for a motion. The weights sum to one.
+/// They are ordered by the speeds of their conditions, ascending, and at equal speeds by the
+/// forces, ascending.
 ///
 /// ```
 /// use htex::play::Mesh;

@@ -72,9 +72,9 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets how the samples are made. The model itself renders them, or a method with less
-    /// computation renders them with a constant spectrum. A [`SampleSource`](crate::SampleSource)
-    /// is always streamed.
+    /// Sets how the samples are made. Either the model itself renders them, or a cheaper method
+    /// renders them with a constant spectrum. A [`SampleSource`](crate::SampleSource) is always
+    /// streamed.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
@@ -115,10 +115,11 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets whether the texture becomes stronger and weaker in time as its recording did, if the
-    /// asset states how much ([`htex_format::Fluctuation`]). By default the noise is stationary.
-    /// The mean square of the samples stays the same. Nobody has tested yet whether this makes a
-    /// texture feel more real. A [`SampleSource`](crate::SampleSource) ignores this option.
+    /// Sets whether the texture becomes stronger and weaker in time as its recording did. This
+    /// works only if the asset states the strength of the fluctuation
+    /// ([`htex_format::Fluctuation`]). By default the noise is stationary. The mean square of the
+    /// samples stays the same. Nobody has tested yet whether this makes a texture feel more real. A
+    /// [`SampleSource`](crate::SampleSource) ignores this option.
     #[must_use]
     pub fn with_fluctuation(mut self, fluctuation: bool) -> Self {
         self.fluctuation = fluctuation;

@@ -140,9 +140,9 @@ impl<'a> Representation<'a> {
         )?)
     }
 
-    /// Makes the source of a voice: a stream of samples of unit RMS, to which the level is not
-    /// applied. `options` has the sample rate of the program's output. For this rate, the model
-    /// chooses the sample rate of the source.
+    /// Makes the source of a voice: a stream of samples of unit RMS, before the level is applied.
+    /// `options` has the sample rate of the program's output. For this rate, the model chooses the
+    /// sample rate of the source.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -156,8 +156,8 @@ impl<'a> Representation<'a> {
 
     /// Returns the magnitudes that a long recording of the voice would show at a motion, or at the
     /// default condition if `motion` is `None`. Frequencies are in hertz, magnitudes in the asset's
-    /// unit. Outside the recorded conditions, the asset's scaling law applies. At a motion at which
-    /// the finger does not slide, the magnitudes are 0. Suppose that m(f) is the magnitude at a
+    /// unit. Outside the recorded conditions, the asset's scaling law applies. If the finger does
+    /// not slide at this motion, the magnitudes are 0. Suppose that m(f) is the magnitude at a
     /// recorded condition, and that the law scales all frequencies by a ratio r. The magnitude of
     /// noise is then `m(f / r) / sqrt(r)`, and the magnitude of a sum of sinusoids is `m(f / r)`.
     ///
@@ -179,7 +179,7 @@ impl<'a> Representation<'a> {
 
     /// Returns the level of a voice at a motion, or at the default condition if `motion` is `None`.
     /// The level is the RMS in the asset's unit. Outside the recorded conditions, the asset's
-    /// scaling law applies. At a motion at which the finger does not slide, the level is 0.
+    /// scaling law applies. If the finger does not slide at this motion, the level is 0.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -210,7 +210,7 @@ impl<'a> Representation<'a> {
 
     /// Returns the magnitudes at a motion as they were recorded, or interpolated between
     /// recordings. Unlike [`Self::magnitude`], this function does not apply the asset's scaling
-    /// law, and the magnitudes are not 0 at motions at which the finger does not slide.
+    /// law. It also does not set the magnitudes to 0 if the finger does not slide at this motion.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].
@@ -272,14 +272,15 @@ impl<'a> Representation<'a> {
         })
     }
 
-    /// Returns the default condition, at which the representation is played when no motion is
-    /// given, as an index into the manifest's conditions. Loads no model.
+    /// Returns the index, in the manifest's conditions, of the default condition, which is played
+    /// when no motion is given. Loads no model.
     ///
     /// The default is the representation's first condition, unless this condition is silent. If it
-    /// is silent, the default is the condition with the highest level that is not silent, and the
-    /// first of several such conditions with equal levels. If all conditions are silent, the
-    /// default is the first condition. A condition is silent if its level is 0, or if a finger does
-    /// not slide at its stated speed or force.
+    /// is silent, the default is the condition with the highest level among the conditions that are
+    /// not silent. If several conditions have this level, the default is the first of them. If all
+    /// conditions are silent, the default is the first condition. A condition is silent if its
+    /// level is 0, or if a finger does not slide at the speed or the force that the condition
+    /// states.
     pub fn default_condition(&self) -> usize {
         let at = &self.data().at;
         let default = default_condition(at, &self.texture.manifest().conditions);

@@ -173,12 +173,12 @@ impl SampleSource {
         &self.recorded.conditions
     }
 
-    /// Changes gradually to the spectrum at this motion, which is interpolated between recorded
-    /// conditions, and returns the level at this motion. A motion outside the recorded conditions
-    /// has the spectrum and the level of the nearest motion within them. Setting the same motion
-    /// again costs no time. For a new motion, the source interpolates parameters in memory that it
-    /// already owns. Does not allocate, lock or do I/O if the model keeps to the ABI, as this
-    /// project's models do.
+    /// Starts a gradual change to the spectrum at this motion, and returns the level at this
+    /// motion. The spectrum is interpolated between recorded conditions. A motion outside the
+    /// recorded range has the spectrum and the level of the nearest motion within this range.
+    /// Setting the same motion again costs no time. For a new motion, the source interpolates
+    /// parameters in memory that it already owns. Does not allocate, lock or do I/O if the model
+    /// keeps to the ABI, as this project's models do.
     ///
     /// # Errors
     /// Returns an error if a value is out of range (see [`Motion`]), or the model cannot

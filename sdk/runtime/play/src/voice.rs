@@ -126,13 +126,14 @@ impl Voice {
     /// between the recorded conditions. If the voice is not streamed
     /// ([`Synthesis`](crate::Synthesis)), only the level changes.
     ///
-    /// Outside the recorded conditions, frequencies and level follow the asset's scaling law
-    /// ([`Law`](htex_format::Law)), starting from the nearest motion within them. Frequencies are
-    /// at least 1/16 and at most 8 times the recorded frequencies, and never exceed half the sample
-    /// rate. The level is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest
-    /// recorded level. The voice is silent while the finger does not slide (below 0.5 mm/s or at 0
-    /// N). Each of these effects can be switched off ([`Effects`](crate::Effects)).
-    /// [`Self::coverage`] reports how these effects apply to a motion.
+    /// Outside the recorded conditions, the voice takes frequencies and level from the nearest
+    /// motion within the recorded range, and scales them by the asset's scaling law
+    /// ([`Law`](htex_format::Law)). Frequencies are at least 1/16 and at most 8 times the recorded
+    /// frequencies, and never exceed half the sample rate. The level is at most
+    /// [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded level. The voice is
+    /// silent while the finger does not slide (below 0.5 mm/s or at 0 N). Each of these effects can
+    /// be switched off ([`Effects`](crate::Effects)). [`Self::coverage`] reports how these effects
+    /// apply to a motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
     /// voice then holds the last valid motion for at most 100 ms. After that, the voice is silent

@@ -356,7 +356,7 @@ impl<'a> Block<'a> {
     }
 
     /// Returns the ceiling of the level, in the asset's unit. Beyond the grid, the scaling law
-    /// raises the level at most to this ceiling.
+    /// never raises the level above this ceiling.
     pub fn ceiling(&self) -> f32 {
         self.ceiling
     }

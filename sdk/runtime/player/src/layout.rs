@@ -18,7 +18,7 @@ pub const RANDOM_PHASE: u8 = 1;
 pub const FLUCTUATES: u8 = 2;
 /// Length of the fluctuation, bytes.
 pub const FLUCTUATION: usize = 8;
-/// Largest absolute value of the offset of the fluctuation's logarithm, octaves.
+/// Largest absolute offset of the fluctuation's logarithm, octaves.
 pub const MOST_OFFSET: f32 = 16.0;
 /// Largest number of coefficients on one side of a noise filter; always a multiple of four.
 pub const MOST_HALF: usize = 320;
@@ -43,7 +43,7 @@ pub const RATE_HZ: (f32, f32) = (100.0, 1e6);
 pub const MOST_VALUE: f32 = 64.0;
 /// Highest level, in the asset's unit.
 pub const MOST_LEVEL: f32 = 1e9;
-/// Highest value of the level's ceiling and of the full scale, in the asset's unit.
+/// Highest ceiling of the level and highest full scale, in the asset's unit.
 pub const MOST_CEILING: f32 = 1e10;
 /// Largest absolute value of an exponent of the law.
 pub const MOST_EXPONENT: f32 = 4.0;
@@ -58,9 +58,9 @@ pub const MOST_FORCE_N: f32 = 20.0;
 /// Time for which the player holds the last plausible motion while readings are not plausible,
 /// seconds.
 pub const HOLD_S: f32 = 0.1;
-/// Lowest ratio of a speed to the nearest speed of the grid. This ratio is also the lowest factor
-/// by which frequencies change.
+/// Lower limit for the ratio of the finger's speed to the nearest speed of the grid. This limit is
+/// also the lowest factor by which frequencies change.
 pub const MIN_RATIO: f32 = 0.0625;
-/// Highest ratio of a speed to the nearest speed of the grid. This ratio is also the highest factor
-/// by which frequencies change.
+/// Upper limit for the ratio of the finger's speed to the nearest speed of the grid. This limit is
+/// also the highest factor by which frequencies change.
 pub const MAX_RATIO: f32 = 8.0;

@@ -101,14 +101,14 @@ impl<'a> Player<'a> {
     }
 
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Returns false,
-    /// without a change, if a number is not finite.
+    /// and keeps the previous motion, if a number is not finite.
     ///
     /// Spectrum and level change gradually to the new motion. Before the first sample, they change
-    /// at once. Beyond the grid, the level and the frequencies of sinusoids follow the law of the
-    /// block, starting from the nearest motion of the grid. While the finger does not slide (below
-    /// 0.5 mm/s, or without force), the player is silent. A motion above 1000 mm/s or 20 N counts
-    /// as a failed reading of a sensor. The player then holds the last plausible motion for 0.1 s.
-    /// After that, it is silent until the next plausible motion.
+    /// at once. Beyond the grid, the player starts from the nearest motion of the grid, and scales
+    /// the level and the frequencies of sinusoids by the law of the block. While the finger does
+    /// not slide (below 0.5 mm/s, or without force), the player is silent. A motion above 1000 mm/s
+    /// or 20 N counts as a failed reading of a sensor. The player then holds the last plausible
+    /// motion for 0.1 s. After that, it is silent until the next plausible motion.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;

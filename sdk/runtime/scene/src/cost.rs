@@ -20,8 +20,9 @@ pub struct Costs {
     pub retune_ns: BTreeMap<String, f64>,
     /// Time to process one sample at the stage's rate, nanoseconds, for each stage.
     pub stage_ns: BTreeMap<String, f64>,
-    /// The same time for each stage that a scene switches on although the stage changes no samples.
-    /// Interpolation and crossfades are not listed and count as 0.
+    /// Time to process one sample in a stage that a scene switches on although the stage changes no
+    /// samples, nanoseconds, for each stage. Interpolation and crossfades are not listed and count
+    /// as 0.
     pub neutral_ns: BTreeMap<String, f64>,
     /// Time per sample that the renderer itself takes, nanoseconds. The first value applies to a
     /// scene in which nothing changes. The second value applies to a scene whose motion is read
@@ -59,7 +60,8 @@ impl Costs {
         serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
     }
 
-    /// Reads stored costs. Returns `None` if the file is missing or has another version.
+    /// Reads stored costs. Returns `None` if the file cannot be read, or if its fields are not
+    /// exactly the fields of this version.
     pub fn load(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }

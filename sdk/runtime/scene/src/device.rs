@@ -1,9 +1,9 @@
 //! Checks a scene's device, and combines the scene's settings with the user's settings. The user's
 //! settings take precedence.
 //!
-//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, consider an asset
-//! of accelerations and a device that plays newtons or an electrovibration display. The device
-//! plays the asset only if the scene or the user states a `quantity_gain`.
+//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, an asset may
+//! contain accelerations, while the device plays newtons or is an electrovibration display. The
+//! device then plays the asset only if the scene or the user states a `quantity_gain`.
 
 use std::collections::BTreeMap;
 

@@ -89,7 +89,7 @@ pub enum SceneError {
         rate_hz: f64,
         rates: String,
     },
-    /// The loudest texture exceeds the reference level so much that the drive voltage would clip
+    /// The loudest texture is so far above the reference level that the drive voltage would clip
     /// more samples than allowed.
     #[error(
         "the loudest texture is {above_db:.1} dB above the reference level of the drive, so that {percent:.0} % of its \

@@ -37,7 +37,8 @@ pub struct SceneFile {
     /// Seed of all random numbers. The same seed gives the same samples.
     #[serde(default)]
     pub seed: u64,
-    /// Limits for choosing the representations of surfaces that do not name one.
+    /// Limits for the planner, which chooses the representation of each surface that does not name
+    /// one.
     #[serde(default, skip_serializing_if = "Budget::is_empty")]
     pub budget: Budget,
     /// Effects that the scene switches on or off, instead of leaving the choice to the planner.
@@ -81,7 +82,8 @@ impl Surface {
     }
 }
 
-/// A rectangle. Its lower edges (smallest x and y) belong to it, but its upper edges do not.
+/// A rectangle. Points on the lower edges (smallest x and y) belong to the rectangle, but points on
+/// the upper edges do not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Region {
@@ -169,8 +171,8 @@ pub struct DeviceChoice {
     /// a reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// The reference level, which is used if `levels` is `own`: the RMS that is mapped to the drive
-    /// voltage or the preview level, in the assets' unit. Default: the RMS of the strongest
+    /// The reference level, in the assets' unit: the RMS that is mapped to the drive voltage or the
+    /// preview level. This RMS is used if `levels` is `own`. Default: the RMS of the strongest
     /// representation of all surfaces that the finger touches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
@@ -179,9 +181,9 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
-    /// Path of a CSV file with the frequency response of the finger on the display, which the scene
-    /// compensates. The columns of the file are `frequency_hz` and `magnitude`. Relative paths
-    /// start at the scene's folder.
+    /// Path of a CSV file with the frequency response that the scene compensates: the response of
+    /// the finger on the display. The columns of the file are `frequency_hz` and `magnitude`.
+    /// Relative paths start at the scene's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
     /// Depth of the compensation, decibels below the response's maximum. At this depth, the gain is
@@ -216,7 +218,7 @@ impl Levels {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
-    /// Maximum time of one sample of the whole chain, nanoseconds.
+    /// Maximum time that the whole chain takes per sample, nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub ns_per_sample: Option<f64>,
@@ -241,11 +243,10 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 pub enum Effect {
     /// Interpolation of parameters and level between recorded conditions as speed and force change.
     Interpolation,
-    /// Scaling of frequencies with the speed, by the asset's scaling law, at speeds outside the
-    /// recorded speeds.
+    /// Scaling of the frequencies by the asset's scaling law, at speeds outside the recorded range.
     FrequencyScaling,
-    /// Scaling of the level with speed and force, by the asset's scaling law, at motions outside
-    /// the recorded motions.
+    /// Scaling of the level by the asset's scaling law, at speeds or forces outside the recorded
+    /// range.
     LevelScaling,
     /// Fluctuation of the texture in time, as the asset states it. The planner includes it only if
     /// the scene switches it on.

@@ -5,7 +5,7 @@
 //! A gain belongs to a texture, not to a file. The key of a gain contains the texture's name and
 //! author, because name and author stay the same after a new fit. A hash of the recordings would
 //! change if a recording were added. The gain stores the RMS at which the voltage was adjusted, so
-//! that other representations keep their energies.
+//! that a representation with another RMS keeps its own energy.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -74,7 +74,7 @@ pub struct Gain {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Gains {
-    /// All gains. No two have the same key.
+    /// All gains. No two gains have the same key.
     pub gains: Vec<Gain>,
 }
 
@@ -191,8 +191,8 @@ impl Gains {
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))
     }
 
-    /// Inserts a gain. The new gain replaces an earlier gain with the same key, and a legacy entry
-    /// for the same person, the same device and a file with this hash.
+    /// Inserts a gain. The new gain replaces an earlier gain with the same key. It also replaces a
+    /// legacy entry for the same person, the same device and a file with this hash.
     pub fn put(&mut self, gain: Gain, blake3: &str) {
         let replaced = |other: &Gain| other.key == gain.key || other.is_of_old(&gain.key, blake3);
         self.gains.retain(|other| !replaced(other));

@@ -70,7 +70,7 @@ impl Place<'_> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// The contents of the file, with overrides applied to its device.
+    /// The contents of the scene file, with the program's device options applied.
     pub file: SceneFile,
     /// Folder where relative paths start.
     pub folder: PathBuf,
@@ -118,7 +118,7 @@ impl Scene {
     }
 
     /// Opens a scene in memory and the files it names. Relative paths start at the folder of
-    /// `path`, but no file at `path` is opened.
+    /// `path`, but the file at `path` itself is not opened.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::open`].
@@ -240,7 +240,7 @@ impl Scene {
     }
 }
 
-/// The hint of findings that disappear if embedded models are allowed to run
+/// The hint in findings that disappear if embedded models are allowed to run
 /// ([`Surroundings::embedded`]).
 pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
 

@@ -308,8 +308,9 @@ impl Renderer {
     }
 
     /// Returns the largest absolute sample so far, in the unit of the device. If the motion is
-    /// constant, the renderer renders up to 1,024 samples ahead. This maximum includes those
-    /// samples, and so do [`Self::limited_samples`] and [`Self::rooted_samples`].
+    /// constant, the renderer renders up to 1,024 samples ahead. This maximum,
+    /// [`Self::limited_samples`] and [`Self::rooted_samples`] include the samples that are rendered
+    /// ahead.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }

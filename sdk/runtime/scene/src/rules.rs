@@ -3,7 +3,7 @@
 //! Some rules are stricter for a scene than for an asset. In an asset, a misspelt key has no
 //! effect, so the reader only warns. In a scene, a misspelt key would change what is felt, so the
 //! reader refuses the scene. Because a scene may come from an untrusted source, it must not name a
-//! driver, or an output file outside its own folder.
+//! driver, and it must not name an output file outside its own folder.
 
 htex_base::finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:

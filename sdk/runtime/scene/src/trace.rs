@@ -1,8 +1,8 @@
 //! A recorded motion (trace), which can be interpolated at any time.
 //!
-//! The speed is computed from the integral of the position, as its second difference
-//! ([`velocity`]). The speed of a steady motion is exact, even if the rows are not evenly spaced.
-//! The steps of a 60 Hz tracker have little influence on the result.
+//! The speed is the second difference of the integral of the position ([`velocity`]). The speed of
+//! a steady motion is exact, even if the rows are not evenly spaced. The steps of a 60 Hz tracker
+//! have little influence on the result.
 
 use std::path::Path;
 

@@ -112,8 +112,8 @@ pub unsafe extern "C" fn htex_index_give(
     })
 }
 
-/// Writes the library's name, what it says about itself, its hash, its number of textures and its
-/// number of pages, as JSON.
+/// Writes the library's name, its own metadata (such as its version and authors), its hash, its
+/// number of textures and its number of pages, as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_json(
     index: u64,

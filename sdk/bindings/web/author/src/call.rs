@@ -1,5 +1,5 @@
-//! The C function of this WASM module, and the table of the functions that JavaScript calls with it
-//! by name.
+//! The C function of this WASM module, and the table of the named functions that JavaScript calls
+//! through it.
 
 use std::ffi::c_char;
 
@@ -40,7 +40,7 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
 /// called function fails, `out` receives a JSON document that describes the error.
 ///
 /// # Safety
-/// The pointers must be valid during the call, and nothing else may use `out` during it.
+/// During the call, the pointers must be valid, and nothing else may use `out`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_author_call(
     name: *const c_char,

@@ -1,6 +1,6 @@
 //! The documents of calls: JSON objects. Functions take entries out of these objects by name.
 //!
-//! Only the tables of settings are read with code that `serde` derives, because derived code adds a
+//! Only the tables of settings are read with code that `serde` derives, because such code adds a
 //! kilobyte or more to the module for each struct.
 
 #[cfg(feature = "make")]

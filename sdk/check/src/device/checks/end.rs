@@ -1,4 +1,4 @@
-//! Checks of finishing, aborting and closing.
+//! Checks how a device finishes, aborts and closes.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Checks of samples that must be refused.
+//! Checks that a device refuses invalid samples: samples beyond the limit, NaN and infinities.
 
 use std::time::Duration;
 

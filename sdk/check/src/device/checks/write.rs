@@ -1,4 +1,4 @@
-//! Checks of writing and of the status.
+//! Checks how an output takes samples, and that its status is correct.
 
 use std::time::Duration;
 

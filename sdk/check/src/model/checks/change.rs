@@ -1,4 +1,4 @@
-//! Checks of changing from one parameter set to another.
+//! Checks how a voice changes from one parameter set to another.
 
 use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};

@@ -1,10 +1,10 @@
-//! Checks random but valid use of voices.
+//! Checks voices with random but valid calls.
 //!
 //! From a seed, the check derives parameters, a band, a sample rate and a sequence of steps. A step
 //! renders a block, retunes the voice to new parameters or to a mix of two parameter sets, or sets
-//! a motion. The sequence is played twice, divided into different blocks. The samples must be
-//! finite, and the same both times. The finding of a failure contains the seed, so that the failure
-//! can be reproduced.
+//! a motion. The check plays the sequence twice, and divides it into different blocks each time.
+//! The samples must be finite, and the same both times. The finding of a failure contains the seed,
+//! so that the failure can be reproduced.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! Checks of retunes at every block.
+//! Checks that retunes at every block change neither the level nor the spectrum.
 
 use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};

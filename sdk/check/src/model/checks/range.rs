@@ -1,5 +1,5 @@
 //! Checks over the whole range of the parameters: at the bounds, for random sets from a seed, and
-//! for fits with signals.
+//! for fits of spectra together with their signals.
 
 use htex_host::{Band, Stream};
 

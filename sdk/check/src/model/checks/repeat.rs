@@ -1,4 +1,5 @@
-//! Checks of seeds, blocks, several voices, and handles.
+//! Checks that samples depend on the seed, and not on the block size or on other voices, and that
+//! freed handles are refused.
 
 use htex_host::{Band, HostError, Status};
 

@@ -84,13 +84,13 @@ impl std::error::Error for FileError {
 
 /// Converts an error of the system to an error that names the file.
 pub trait AtFile<T> {
-    /// Names the file, and says that the program was reading it.
+    /// Adds the name of the file to the error, and states that the program was reading the file.
     ///
     /// # Errors
     /// If the result is an error.
     fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 
-    /// Names the file, and says that the program was writing it.
+    /// Adds the name of the file to the error, and states that the program was writing the file.
     ///
     /// # Errors
     /// If the result is an error.

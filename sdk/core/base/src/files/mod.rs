@@ -1,6 +1,6 @@
 //! Reads and writes files safely, including untrusted files and folders.
 //!
-//! - If an untrusted file, such as a recipe, names another file, the program reads the named file
+//! - An untrusted file, such as a recipe, may name another file. The program reads the named file
 //!   only if it is a regular file, and only up to a size limit ([`read_regular`]).
 //! - A program that writes to an untrusted folder does not follow links in this folder
 //!   ([`OwnFolder`]).
@@ -8,11 +8,11 @@
 //! - Files are written atomically: a file is first written under a temporary name and then renamed
 //!   to its target. So readers see either the old file or the complete new file.
 //!
-//! If the path of a file to write is a symbolic link, the link's target is replaced, with the
-//! permissions of the old target. A device or a pipe is written to directly. A process that
-//! receives a signal to end removes its unfinished files with [`remove_unfinished`]. The next
-//! process that writes to a folder removes the unfinished files that killed processes left in this
-//! folder.
+//! If the path of an output file is a symbolic link, the program replaces the link's target and
+//! keeps the permissions of the old target. The program writes directly to a device or a pipe. A
+//! process that receives a signal to end removes its unfinished files with [`remove_unfinished`].
+//! The next process that writes to a folder removes the unfinished files that killed processes left
+//! in this folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -191,9 +191,9 @@ impl Drop for FileInProgress {
 pub struct Scratch(NamedTempFile);
 
 impl Scratch {
-    /// Creates a file in the folder of `path`, and thus on the file system on which the result will
-    /// be. If `path` is a pipe or a device, the file is created in the system's folder for
-    /// temporary files.
+    /// Creates a file in the folder of `path`, so that it is on the same file system as the result.
+    /// If `path` is a pipe or a device, the file is created in the system's folder for temporary
+    /// files.
     ///
     /// # Errors
     /// Returns an error if the folder does not exist, or the system reports an error.

@@ -1,5 +1,5 @@
-//! A folder in which a program writes and removes files, and which may come from somebody else. An
-//! example is the result of an earlier build that was unpacked from an archive.
+//! A possibly untrusted folder in which a program writes and removes files. An example is the
+//! result of an earlier build that was unpacked from an archive.
 //!
 //! Such a folder may contain links at the places where the program writes and removes files. So the
 //! program does not follow links inside the folder. Only the folder itself may be a link, because
@@ -38,8 +38,8 @@ impl OwnFolder {
         Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// Uses the folder at this path, as [`Self::new`] does, but everything that is created is
-    /// private. Only this user may read new folders and files in the folder. If the folder itself
+    /// Uses the folder at this path, as [`Self::new`] does, but makes everything private that it
+    /// creates. Only this user may read new folders and files in the folder. If the folder itself
     /// does not exist yet, it is also created as a private folder.
     pub fn private(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::User }
@@ -222,7 +222,7 @@ impl OwnFolder {
         self.write_by(Path::new(&part), inside, bytes)
     }
 
-    /// Writes a file as [`Self::write`] does, but first under the name `part`, which may be
+    /// Writes a file as [`Self::write`] does, but with the temporary name `part`, which may be
     /// anywhere in this folder.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! Private folders, to which only this user can write, and private files, which only this user can
-//! read and write.
+//! Private folders, to which only this user can write, and private files, which no other user can
+//! read or write.
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io;
@@ -62,7 +62,7 @@ pub fn close(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Sets options so that only this user can read and write a file that is created with them.
+/// Sets options so that they create files which only this user can read and write.
 pub fn only_user(options: &mut std::fs::OpenOptions) -> &mut std::fs::OpenOptions {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(options, 0o600);

@@ -1,10 +1,10 @@
-//! Text in a table cell that may be opened in a spreadsheet.
+//! Text for the cells of a table that the user may open in a spreadsheet.
 
 use std::borrow::Cow;
 
 /// Returns text for a table cell. If a spreadsheet would treat the text as a formula, this function
-/// adds an apostrophe at the start, which marks it as text. A formula could open an address or run
-/// a program.
+/// adds an apostrophe at the start. The apostrophe marks the cell as text. A formula could open an
+/// address or run a program.
 ///
 /// ```
 /// assert_eq!(htex_base::finding::as_text("=HYPERLINK(1)"), "'=HYPERLINK(1)");

@@ -47,9 +47,9 @@ pub struct Finding {
     pub pointer: String,
     /// The problem, its place, and what to do about it.
     pub message: String,
-    /// The JSON Schema keyword that the document breaks: the name of the schema's file, `#`, and a
-    /// JSON pointer into the schema. Only validators that check documents against JSON Schemas set
-    /// this.
+    /// The JSON Schema keyword that the document violates, written as the name of the schema's
+    /// file, `#`, and a JSON pointer into the schema. Only validators that check documents against
+    /// JSON Schemas set this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,

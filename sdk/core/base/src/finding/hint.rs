@@ -6,9 +6,9 @@ use std::ops::Deref;
 use serde::{Serialize, Serializer};
 
 /// The settings that would fix a problem. A hint contains the names that flags, recipes and keyword
-/// arguments share, e.g. `map` or `most_numbers`. A name may be followed by a value, e.g.
-/// `segments windows`. The text of the message describes the setting only in words, so that each
-/// program can add the setting's name in its own notation, such as a flag.
+/// arguments share, e.g. `map` or `most_numbers`. A name may be followed by a value, e.g. `segments
+/// windows`. The text of the message describes the setting only in words. So each program can add
+/// the setting's name in its own notation, such as a flag.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hint(&'static [&'static str]);
 

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 /// Escapes control characters and invisible formatting characters (direction marks, zero-width
-/// characters, tags, other line ends) as `\u{1b}`. A message that quotes a file must not control
-/// the terminal, and must not appear to show text that is not in the file.
+/// characters, tags, Unicode line separators) in the form `\u{1b}`. A message that quotes a file
+/// must not control the terminal, and must not appear to show text that is not in the file.
 ///
 /// ```
 /// assert_eq!(htex_base::finding::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");

@@ -28,7 +28,7 @@ pub struct Rule {
 pub struct Stage {
     /// What the stage checks.
     pub of: &'static str,
-    /// Whether reading ends after the stage if it found an error.
+    /// Whether reading ends after this stage if the stage found an error.
     pub ends: bool,
 }
 

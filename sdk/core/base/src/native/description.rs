@@ -1,8 +1,8 @@
 //! Descriptors of plugins that can be read without running the plugin.
 //!
-//! A WASM module carries its descriptor in a custom section, [`SECTION`]. Beside a native library,
-//! and beside a module without the section, there is a file with the descriptor and the hash of the
-//! plugin.
+//! A WASM module carries its descriptor in a custom section, [`SECTION`]. A native library, or a
+//! module without this section, has a file beside it that contains the descriptor and the hash of
+//! the plugin.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,8 @@ pub fn description_path(plugin: &Path) -> PathBuf {
     path.into()
 }
 
-/// Returns the description of a plugin with these bytes.
+/// Returns the text of a plugin's description file, with this descriptor and the hash of the
+/// plugin's bytes.
 ///
 /// # Errors
 /// If the descriptor is not JSON.
@@ -50,8 +51,8 @@ pub fn description(plugin: &[u8], descriptor: &str) -> Result<String, serde_json
     Ok(serde_json::to_string_pretty(&description)? + "\n")
 }
 
-/// Returns the descriptor of a plugin as JSON, without running the plugin; `None` if the plugin
-/// does not carry it, or if the description beside it is of other bytes.
+/// Returns the descriptor of a plugin as JSON, without running the plugin; `None` if the plugin has
+/// no stored descriptor, or if the description file beside the plugin has the hash of other bytes.
 ///
 /// # Errors
 /// Errors of the system.
@@ -69,13 +70,13 @@ pub fn read_descriptor(plugin: &Path) -> io::Result<Option<String>> {
     Ok(own.map(|description| description.descriptor.to_string()))
 }
 
-/// Returns the content of a module's section with its descriptor.
+/// Returns the content of a module's descriptor section.
 pub fn section(module: &[u8]) -> Option<&[u8]> {
     sections(module).find_map(|section| section.descriptor)
 }
 
-/// Returns a module with this descriptor in its section, in place of an earlier one; `None` if the
-/// bytes are not a module.
+/// Returns a copy of the module with this descriptor in its descriptor section, in place of any
+/// earlier descriptor; `None` if the bytes are not a module.
 pub fn with_section(module: &[u8], descriptor: &str) -> Option<Vec<u8>> {
     let mut all = module.get(..MODULE_START.len())?.to_vec();
     let mut read = all.len();

@@ -26,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the names and values of the environment variables for folders whose value is a relative
-/// path. The other functions of this module ignore such variables.
+/// Returns the environment variables for folders that are set to relative paths, with their values.
+/// The other functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);
@@ -43,14 +43,15 @@ pub fn data(folder: &str) -> Option<PathBuf> {
     data_or_new(folder).filter(|data| data.exists())
 }
 
-/// Returns a folder in the user's data folder as [`data`] does, also if it does not exist.
+/// Returns a folder in the user's data folder as [`data`] does, even if the folder does not exist.
 pub fn data_or_new(folder: &str) -> Option<PathBuf> {
     Some(base("XDG_DATA_HOME", ".local/share")?.join(folder))
 }
 
-/// Returns the folders of this name for all users of this machine that exist: in the folders of
-/// `$XDG_DATA_DIRS`, or in `/usr/local/share` and `/usr/share` if the variable is not set. On
-/// Windows, in `%PROGRAMDATA%`; on macOS, in `/Library/Application Support`.
+/// Returns the existing folders of this name that all users of this machine share: in the folders
+/// of `$XDG_DATA_DIRS`, or in `/usr/local/share` and `/usr/share` if the variable is not set. On
+/// Windows, the function looks in `%PROGRAMDATA%`; on macOS, it looks in `/Library/Application
+/// Support`.
 pub fn system(folder: &str) -> Vec<PathBuf> {
     let of_variable: Vec<PathBuf> =
         listed("XDG_DATA_DIRS").into_iter().filter(|dir| dir.is_absolute()).collect();
@@ -66,8 +67,7 @@ pub fn system(folder: &str) -> Vec<PathBuf> {
     all.into_iter().map(|dir| dir.join(folder)).filter(|dir| dir.exists()).collect()
 }
 
-/// Returns the folders in an environment variable, whose value lists folders in the same way as
-/// `PATH`.
+/// Returns the folders that an environment variable lists, in the format of `PATH`.
 pub fn listed(variable: &str) -> Vec<PathBuf> {
     let value = var_os(variable).unwrap_or_default();
     let folders = split_paths(&value).filter(|dir| !dir.as_os_str().is_empty());

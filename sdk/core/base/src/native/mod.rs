@@ -4,9 +4,10 @@
 //! A library is never unloaded, because function pointers, open devices and voices point into its
 //! memory.
 //!
-//! Apart from tests, only this crate loads libraries. As in every other argument, a file name
-//! without a folder means a file in the current folder. There are two exceptions, for which the
-//! system's loader searches: the library of NI-DAQmx, and a `driver` setting that names no file.
+//! Apart from tests, only this crate loads libraries. A file name without a folder means a file in
+//! the current folder, as in every other argument. There are two exceptions, for which the system's
+//! loader searches: the library of NI-DAQmx, and a `driver` setting without a folder, if the
+//! current folder has no file of this name.
 
 #[cfg(feature = "key")]
 pub mod description;
@@ -40,8 +41,8 @@ use libloading::Library as Loaded;
 enum Loaded {}
 
 impl Library {
-    /// Loads the library in a file. A relative path, including a file name alone, is relative to
-    /// the current folder. The loader's search path is not used.
+    /// Loads the library in a file. A relative path, such as a file name without a folder, is
+    /// relative to the current folder. The loader's search path is not used.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -89,7 +90,7 @@ impl Library {
         found.map_err(|reason| io::Error::other(format!("{reason}{SEARCHED}")))
     }
 
-    /// Loads the first of several libraries that the system's loader finds.
+    /// Tries several names in order, and loads the first library that the system's loader finds.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -140,11 +141,11 @@ impl<E> Symbols<'_, E> {
     }
 }
 
-/// Makes a table of functions: of a library, with [`Symbols`], or of a module, with any value that
-/// has a method `get`. The name of each function is the prefix followed by the name of the field.
-/// For a library the macro is unsafe, because each symbol must have the type of its field. If a
-/// function is missing, the function that uses the macro returns the error. Fields that are not
-/// functions follow after a semicolon.
+/// Makes a table of functions from a library (through [`Symbols`]) or from a module (through any
+/// value that has a method `get`). The name of each function is the prefix followed by the name of
+/// the field. For a library the macro is unsafe, because each symbol must have the type of its
+/// field. If a function is missing, the function that calls the macro returns early with the error.
+/// Fields that are not functions follow after a semicolon.
 #[macro_export]
 macro_rules! table_of_symbols {
     ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)* $(; $other:ident: $value:expr)*) => {

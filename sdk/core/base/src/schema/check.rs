@@ -45,7 +45,7 @@ impl Retrieve for Nothing {
 }
 
 impl Schema {
-    /// Compiles a schema, of draft 2020-12 or of the draft that its `$schema` names.
+    /// Compiles a schema of draft 2020-12, or of another draft that its `$schema` names.
     ///
     /// # Errors
     /// Returns an error if `schema` is not a valid schema, or refers to another schema.

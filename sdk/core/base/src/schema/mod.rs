@@ -49,8 +49,8 @@ macro_rules! white_space {
 /// Pattern for a text that contains a character other than white space.
 pub const NOT_BLANK: &str = concat!("[^", white_space!(), "]");
 
-/// Returns the schema of a document. If a value is missing, such a document omits the key, and does
-/// not give it the value `null`. `file` is the file name of the schema in `spec/schemas`.
+/// Returns the schema of a document. A document omits the key of a missing value; it never sets the
+/// key to `null`. `file` is the file name of the schema in `spec/schemas`.
 pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {
     let mut schema = made::<T>(file, title);
     without_null(&mut schema);

@@ -3,9 +3,9 @@
 //!
 //! - A file is written completely or not at all: with one request, or in parts that become a file
 //!   only with the last request. Local files are written next to their targets and then renamed.
-//! - Temporary failures (503, 429, a stalled or cut connection) are retried with growing pauses,
-//!   within a total time ([`Settings`]). A response that was cut off is resumed at the same version
-//!   of the file.
+//! - The module retries after temporary failures (503, 429, a stalled or cut connection) with
+//!   growing pauses, within a total time ([`Settings`]). A response that was cut off is resumed at
+//!   the same version of the file.
 //! - Credentials come only from environment variables, and no message contains a credential
 //!   ([`StorageError`]).
 //! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
@@ -217,8 +217,8 @@ impl Storage {
         }
     }
 
-    /// Lists the files below a folder, sorted by name, whose relative names match a pattern:
-    /// `*.csv`, `**/*.htex`. Returns at most 1,000,000 files.
+    /// Lists the files below a folder whose relative names match a pattern (`*.csv`, `**/*.htex`),
+    /// sorted by name. Returns at most 1,000,000 files.
     ///
     /// # Errors
     /// Returns the errors of [`Self::read`], an error for a malformed pattern, and an error for a

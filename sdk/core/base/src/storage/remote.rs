@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::storage::cloud::{Store, Version};
 use crate::storage::{Location, StorageError, StorageProblem, local};
 
-/// The requests and bytes that reading has cost so far.
+/// The number of requests and the number of bytes that reading a file has needed so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Usage {
     /// Number of requests that were sent, including retries; for a local file, the number of reads.

@@ -20,9 +20,9 @@ pub struct Settings {
     /// `HTEX_STORAGE_TIMEOUT_S`.
     pub total: Duration,
     /// Longest time without receiving a byte: 30 s. Opening the connection may take at most 10 s of
-    /// this time. After this time, the request is sent again.
+    /// this time. If either time is exceeded, the program sends the request again.
     pub stall: Duration,
-    /// Largest number of times that a request is sent again: 20.
+    /// Largest number of retries of a request: 20.
     pub retries: usize,
     /// Pause before the first retry: 0.2 s. Each later pause is random, up to six times as long as
     /// the pause before.

@@ -2,8 +2,8 @@
 
 use crate::library::header::EXTENSION;
 
-/// Splits the address of a texture in a library into the address of the library and the name of the
-/// texture. Returns `None` for any other address.
+/// Splits a texture's address in a library into the library's address and the texture's name.
+/// Returns `None` for any other address.
 ///
 /// The library is a path or a URI. Its file name ends in `.htexlib`.
 ///

@@ -1,4 +1,5 @@
-//! Spectra that are coarse enough for an index, with which programs find similar textures.
+//! Spectra that are coarse enough to store in an index, for programs that search for similar
+//! textures.
 
 /// Number of points, evenly spaced in log frequency from 20 to 1000 Hz.
 pub(crate) const POINTS: usize = 48;
@@ -12,8 +13,8 @@ const STEPS: f64 = 255.0;
 
 /// A texture's spectrum at 48 points, for searches.
 ///
-/// Point *i* is the level from 20·50^(i/48) to 20·50^((i+1)/48) Hz. A level lower than 40 dB below
-/// the largest one counts as 40 dB below.
+/// Point *i* is the level from 20·50^(i/48) to 20·50^((i+1)/48) Hz. A level that is more than 40 dB
+/// below the largest level is raised to 40 dB below it.
 ///
 /// ```
 /// use htex_format::library::CoarseSpectrum;
@@ -36,7 +37,7 @@ impl CoarseSpectrum {
     ///
     /// A point is the RMS of the magnitudes whose frequencies are in its range. If no frequency is
     /// in the range, the point is the interpolated magnitude at the centre of the range. Outside
-    /// the given frequencies, the magnitude is 0.
+    /// the range of the frequencies that the caller passes, the magnitude counts as 0.
     pub fn new(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let edge = |i: usize| LOW_HZ * libm::pow(HIGH_HZ / LOW_HZ, i as f64 / POINTS as f64);
         let mut points = [0.0; POINTS];

@@ -7,8 +7,8 @@ use crate::library::coarse_spectrum::CoarseSpectrum;
 /// programs that only read and validate libraries do not check them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Description {
-    /// The texture's spectrum at its default condition; `None` if it is silent, or if the writer
-    /// does not know its models.
+    /// The texture's spectrum at its default condition; `None` if the texture is silent, or if the
+    /// writer does not know the texture's models.
     pub spectrum: Option<CoarseSpectrum>,
     /// The felt difference between the texture and its recordings, RMS over third-octave bands, at
     /// the worst condition, decibels; `None` if it is not known.

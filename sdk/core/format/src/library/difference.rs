@@ -23,8 +23,8 @@ pub struct LibraryDifference {
 }
 
 impl LibraryDifference {
-    /// Compares two libraries. If their indexes have the same hash, no page is read. `of_a`
-    /// converts an error of the first library, and `of_b` an error of the second library.
+    /// Compares two libraries. Reads no page if the indexes of both libraries have the same hash.
+    /// `of_a` converts an error of the first library, and `of_b` an error of the second library.
     ///
     /// ```no_run
     /// use htex_format::library::{Library, LibraryDifference};

@@ -48,9 +48,9 @@ pub struct Entry {
     /// worst condition, decibels; `None` if the writer did not know it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub felt_error_rms_db: Option<f64>,
-    /// Held-out error: the difference between the texture, fitted to one half of its recordings,
-    /// and the other half, RMS over third-octave bands, at the worst recorded condition, decibels;
-    /// `None` if the texture does not state it.
+    /// Held-out error, RMS over third-octave bands, at the worst recorded condition, decibels;
+    /// `None` if the texture does not state it. This is the difference between the texture, fitted
+    /// to one half of its recordings, and the other half.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out_error_db: Option<f64>,
     /// Size of the texture's `.htex` file, bytes.

@@ -1,4 +1,4 @@
-//! A broken rule of the format, from which the caller makes an error or a finding.
+//! A violation of a rule of the format, which the caller converts to an error or a finding.
 
 use htex_base::finding::{Findings, Rule};
 

@@ -24,7 +24,7 @@ use crate::library::spectra::read_spectra;
 /// A texture is opened in three steps:
 ///
 /// 1. [`Self::leaf_of`] finds the leaf page for the texture's name, and [`Self::leaf_range`]
-///    returns the bytes of that page in the file.
+///    returns the byte range of that page in the file.
 /// 2. [`Self::read_leaf`] decodes the page. One of its entries is the texture's entry.
 /// 3. [`Self::asset_ranges`] returns the ranges of the texture's bytes, and [`Self::assemble`]
 ///    assembles the texture from these bytes.
@@ -52,7 +52,7 @@ impl Index {
         &self.root.name
     }
 
-    /// Returns what the library says about itself.
+    /// Returns the library's metadata, such as its version, description and authors.
     pub fn metadata(&self) -> &LibraryMetadata {
         &self.root.metadata
     }
@@ -69,8 +69,9 @@ impl Index {
         self.header.index_blake3
     }
 
-    /// Returns the minor version of the library's format. An index of version 1.0 has no licences,
-    /// authors, quantities, felt differences or spectra.
+    /// Returns the minor version of the library's format. An index of version 1.0 has no library
+    /// metadata, and no licences, authors, quantities, felt differences, held-out errors or
+    /// spectra.
     pub fn minor_version(&self) -> u16 {
         self.header.minor
     }
@@ -109,8 +110,8 @@ impl Index {
         self.root.leaf(leaf)
     }
 
-    /// Returns the byte range in the file of the page with the spectra of a leaf page's entries;
-    /// `None` if no entry has a spectrum.
+    /// Returns the byte range, in the file, of the page that contains the spectra for one leaf
+    /// page; `None` if no entry of the leaf page has a spectrum.
     pub fn spectra_range(&self, leaf: usize) -> Option<Range<u64>> {
         self.root.spectra(leaf)
     }

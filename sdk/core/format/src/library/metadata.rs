@@ -1,4 +1,4 @@
-//! What a library says about itself.
+//! The metadata of a library, such as its version, description and authors.
 
 use htex_base::finding::steers;
 use schemars::JsonSchema;
@@ -10,7 +10,8 @@ use crate::library::wire::TEXT_BYTES;
 /// still ends in the first 16 KiB of the file.
 pub(crate) const METADATA_BYTES: usize = 8 << 10;
 
-/// What a library says about itself. Everything may be absent.
+/// The metadata of a library, such as its version, description and authors. Everything may be
+/// absent.
 ///
 /// ```
 /// use htex_format::library::LibraryMetadata;
@@ -35,7 +36,7 @@ pub struct LibraryMetadata {
     /// Where the recordings or the recipe of the library are, such as the address of a repository.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "text")]
     pub source: Option<String>,
-    /// What changed since earlier versions, or the address of a page that says it.
+    /// What changed since earlier versions, or the address of a page that describes the changes.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "text")]
     pub changelog: Option<String>,
     /// Date of this version: `YYYY-MM-DD`.

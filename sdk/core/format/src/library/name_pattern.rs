@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use glob::{MatchOptions, Pattern};
 
-/// A name, or a pattern of names: `*` matches any text inside a part of a name, `?` one character,
-/// `[ab]` one of these characters, and `**` also matches across parts.
+/// A name, or a pattern of names: `*` matches any text inside a part of a name, `?` matches one
+/// character, `[ab]` matches one of these characters, and `**` matches any text, also across parts.
 ///
 /// ```
 /// use htex_format::library::NamePattern;
@@ -31,7 +31,8 @@ impl NamePattern {
         self.matches_with(name, true)
     }
 
-    /// Returns whether a text matches. In this text, `/` is an ordinary character.
+    /// Returns whether a text matches. In this text, `/` is an ordinary character, which `*` and
+    /// `?` also match.
     pub fn matches_text(&self, text: &str) -> bool {
         self.matches_with(text, false)
     }
@@ -44,7 +45,7 @@ impl NamePattern {
         }
     }
 
-    /// Returns whether several names may match.
+    /// Returns whether this is a pattern, which may match several names.
     pub fn is_pattern(&self) -> bool {
         matches!(self.0, NameOrPattern::Pattern(_))
     }

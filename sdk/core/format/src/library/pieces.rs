@@ -1,4 +1,5 @@
-//! The pieces of which a packer puts textures together, and the stores that have their bytes.
+//! The pieces from which a packer assembles textures, and the stores that contain the bytes of the
+//! pieces.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -25,10 +26,11 @@ pub(crate) struct Piece {
 /// The pieces of a texture.
 #[derive(Debug, Clone)]
 pub(crate) struct Pieces {
-    /// The texture's bytes except its objects.
+    /// The texture's own bytes: all bytes except the bytes of its objects.
     pub own: Piece,
-    /// A pair of numbers for each object of the texture. The first number says how many of the own
-    /// bytes precede the object; the second is the object's index in [`Objects`].
+    /// A pair of numbers for each object of the texture. The first number says how many of the
+    /// texture's own bytes precede the object. The second number is the object's index in
+    /// [`Objects`].
     pub objects: Box<[(u32, u32)]>,
 }
 
@@ -36,9 +38,10 @@ pub(crate) struct Pieces {
 pub(crate) struct Object {
     pub blake3: [u8; 32],
     pub piece: Piece,
-    /// Number of times that textures contain the object.
+    /// Number of times that the object occurs in all textures together.
     pub uses: u64,
-    /// Whether the object is a part that only equal textures share. This is false for modules.
+    /// Whether the object is a part of a texture that only equal textures can share. This is false
+    /// for modules.
     pub is_part: bool,
 }
 

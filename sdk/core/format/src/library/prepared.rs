@@ -4,7 +4,8 @@ use crate::library::description::Description;
 use crate::library::facts::Facts;
 use crate::{Asset, ReadError};
 
-/// Computes what a library states about a texture in addition to the texture's manifest.
+/// A function that computes a texture's description: values for searches, in addition to the facts
+/// in the texture's manifest.
 pub type Describe = fn(&Asset) -> Description;
 
 /// A checked texture that is ready to be added to a library. Several threads can prepare textures
@@ -22,13 +23,13 @@ pub struct PreparedTexture {
     pub(crate) bytes: Vec<u8>,
     pub(crate) blake3: [u8; 32],
     pub(crate) facts: Facts,
-    /// What the library states about the texture in addition to the texture's manifest.
+    /// Values for searches, in addition to the facts in the texture's manifest.
     pub description: Description,
 }
 
 impl PreparedTexture {
-    /// Checks the bytes of a `.htex` file. `describe` computes the texture's description. If it is
-    /// `None`, the description is empty.
+    /// Checks the bytes of a `.htex` file. `describe` computes the texture's description. If
+    /// `describe` is `None`, the description is empty.
     ///
     /// # Errors
     /// If the bytes are not a valid asset.
@@ -38,7 +39,8 @@ impl PreparedTexture {
         Ok(Self::of_asset(&asset, bytes, description))
     }
 
-    /// Takes the bytes that were written from an asset.
+    /// Creates a prepared texture from an asset, the bytes that were written from this asset, and a
+    /// description.
     pub fn of_asset(asset: &Asset, bytes: Vec<u8>, description: Description) -> Self {
         let blake3 = *blake3::hash(&bytes).as_bytes();
         Self { blake3, facts: Facts::new(&asset.manifest), bytes, description }

@@ -34,7 +34,7 @@ pub struct Query {
     pub model: Option<String>,
     /// Licence that the texture must have, ignoring case. `*` stands for any text, as in `CC*`.
     pub license: Option<String>,
-    /// Author that the texture must have, as for the licence.
+    /// Author that the texture must have, compared in the same way as the licence.
     pub author: Option<String>,
     /// Quantity that the texture must have.
     pub quantity: Option<Quantity>,
@@ -68,8 +68,7 @@ impl Query {
             && is_at_most(entry.felt_error_rms_db, self.felt_error_rms_db)
     }
 
-    /// Returns whether the query asks for a property that the index of a library of version 1.0
-    /// does not have.
+    /// Returns whether the query asks for a property that an index of version 1.0 does not store.
     pub fn needs_version_1_1(&self) -> bool {
         self.license.is_some()
             || self.author.is_some()

@@ -106,7 +106,7 @@ impl<S: LibrarySource> Library<S> {
         self.index.name()
     }
 
-    /// Returns what the library says about itself.
+    /// Returns the library's metadata, such as its version and authors.
     pub fn metadata(&self) -> &LibraryMetadata {
         self.index.metadata()
     }
@@ -157,7 +157,7 @@ impl<S: LibrarySource> Library<S> {
         self.read(&self.needed(name)?)
     }
 
-    /// Reads the entry of a texture that the library should have.
+    /// Reads the entry of a texture, and returns an error if the library does not have the texture.
     ///
     /// # Errors
     /// Returns the errors of [`Self::get`].
@@ -220,9 +220,9 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
-    /// Reads what the library states about a texture in addition to the texture's manifest. The
-    /// entry must come from this library. Reads the page with the spectra of its leaf, unless it is
-    /// in the cache.
+    /// Reads a texture's description: values for searches, in addition to the facts in the
+    /// texture's manifest. The entry must come from this library. If the page of spectra that
+    /// belongs to the entry's leaf page is not in the cache, the function reads that page.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.

@@ -1,5 +1,6 @@
 //! The root page of the index. It contains the library's name and metadata and, for each leaf page,
-//! the length of the page and a separator. The names on a leaf page are not smaller than the page's separator.
+//! the length of the page and a separator. Each name on a leaf page equals the page's separator or
+//! sorts after it.
 //!
 //! The root page of a million textures fits into the first 16 KiB of the file, so that the first
 //! read contains it.
@@ -26,7 +27,7 @@ pub(crate) struct Root {
     separators: Texts,
     /// Offsets of the leaves in the file, followed by the end of the last leaf.
     offsets: Vec<u64>,
-    /// What the library says about itself.
+    /// The library's metadata.
     // In a box, so that an open library is not much larger than one that is being opened.
     pub metadata: Box<LibraryMetadata>,
     /// Offsets of the spectra of each leaf in the file, followed by the end of the last ones.

@@ -23,16 +23,17 @@ pub struct Similar {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duplicate {
     pub entry: Entry,
-    /// Name of the nearest texture among the textures before this one in the library.
+    /// Name of the earlier texture in the library whose spectrum is nearest to the spectrum of this
+    /// texture.
     pub of: String,
     /// RMS difference of the levels of both spectra, decibels.
     pub distance_db: f64,
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Returns the `most` textures of a quantity whose spectra are nearest to a spectrum, the
-    /// nearest texture first. The function considers only textures that match the query and have a
-    /// spectrum.
+    /// Returns the textures of a quantity whose spectra are nearest to a given spectrum: at most
+    /// `most` textures, the nearest first. The function considers only textures that match the
+    /// query and have a spectrum.
     ///
     /// ```no_run
     /// # use htex_format::library::{Library, Query};
@@ -74,9 +75,10 @@ impl<S: LibrarySource> Library<S> {
         Ok(nearest)
     }
 
-    /// Returns each texture whose spectrum differs by at most `within_db` from the spectrum of an
-    /// earlier texture of the same quantity, sorted by name. So the result does not contain the
-    /// first texture of a group of equal textures. Only textures that match the query are compared.
+    /// Returns each texture whose spectrum nearly equals the spectrum of an earlier texture, sorted
+    /// by name. The spectra of the two textures differ by at most `within_db`, and both textures
+    /// have the same quantity. So the result does not contain the first texture of a group of equal
+    /// textures. Only textures that match the query are compared.
     ///
     /// # Errors
     /// If the index or the spectra cannot be read or break a rule.

@@ -1,9 +1,9 @@
 //! Decides which objects the textures of a library share, and where the file contains their bytes.
 //!
 //! The writer compares the hashes of all embedded modules, and of all textures. If several textures
-//! embed the same module, it stores the module once. It also stores equal textures once. An object
-//! that only one texture has stays among that texture's own bytes, because sharing it would save
-//! nothing.
+//! embed the same module, the writer stores the module once. It also stores equal textures once. If
+//! only one texture has an object, the object stays among that texture's own bytes, because sharing
+//! the object would save nothing.
 
 use std::ops::Range;
 

@@ -8,11 +8,11 @@ use crate::library::error::LibraryError;
 
 /// A source of a library's bytes: a local file, a buffer, or a file on a server.
 ///
-/// A library reads a few large ranges: the first 16 KiB when it is opened, and for each texture a
-/// page of the index and the texture's bytes.
+/// A library reads a few large ranges. When it is opened, it reads the first 16 KiB. For each
+/// texture, it reads a page of the index and the texture's bytes.
 pub trait LibrarySource {
-    /// Returns the length of the file, bytes. The library calls it only after the first read, so
-    /// that a network source can take the length from its first response.
+    /// Returns the length of the file, bytes. The library calls this function only after the first
+    /// read, so that a network source can take the length from its first response.
     ///
     /// # Errors
     /// The errors of the source.

@@ -1,4 +1,5 @@
-//! A page of spectra: the spectra of the entries of a leaf page, in the order of the entries.
+//! A page of spectra: it contains the spectra of all entries on one leaf page, in the order of the
+//! entries.
 
 use crate::library::coarse_spectrum::{CoarseSpectrum, POINTS};
 use crate::library::wire::{Cursor, WireError};

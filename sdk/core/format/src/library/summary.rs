@@ -11,7 +11,7 @@ use crate::library::metadata::LibraryMetadata;
 use crate::library::reader::Library;
 use crate::library::source::LibrarySource;
 
-/// What a library says about itself, and how many textures of each kind it has.
+/// A summary of a library: its metadata, and how many textures of each kind it has.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LibrarySummary {
@@ -32,12 +32,12 @@ pub struct LibrarySummary {
     /// Range of the conditions of all textures.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// Number of textures of each licence. `none` stands for textures that state none. The index of
-    /// a library of version 1.0 has no licences and no quantities.
+    /// Number of textures of each licence. The key `none` counts the textures that state no
+    /// licence. The index of a library of version 1.0 has no licences and no quantities.
     pub licenses: BTreeMap<String, u64>,
     /// Number of textures of each quantity.
     pub quantities: BTreeMap<String, u64>,
-    /// Number of textures that each model describes, by its id.
+    /// Number of textures that each model describes; the keys are the ids of the models.
     pub models: BTreeMap<String, u64>,
     /// Number of textures of each kind of contact.
     pub contacts: BTreeMap<String, u64>,

@@ -53,17 +53,18 @@ impl Writer {
     }
 
     /// Allows textures that state no licence. Without this call, [`Self::finish`] returns an error
-    /// for such textures, because nobody except their authors may pass them on.
+    /// for such textures, because only the authors of such a texture may pass it on.
     pub fn allow_unlicensed(&mut self) {
         self.packer.allows_unlicensed = true;
     }
 
-    /// Sets what the library says about itself.
+    /// Sets the library's metadata, such as its version and authors.
     pub fn set_metadata(&mut self, metadata: LibraryMetadata) {
         self.packer.metadata = metadata;
     }
 
-    /// Describes each texture that is added without a description by this function.
+    /// Sets the function that computes the description of each texture that is added without a
+    /// description.
     pub fn describe_with(&mut self, describe: Describe) {
         self.packer.describe = Some(describe);
     }
@@ -94,8 +95,8 @@ impl Writer {
     }
 
     /// Adds the textures of another library unchanged, without unpacking them. `name` returns the
-    /// new name of an entry, or `None` to leave the texture out. The entries come in the order of
-    /// their names.
+    /// new name of an entry, or `None` to leave the texture out. `name` receives the entries in the
+    /// order of their names.
     ///
     /// The textures are not checked again. [`validate`](crate::library::validate) checks a library
     /// that may be damaged.
@@ -113,7 +114,8 @@ impl Writer {
     ///
     /// # Errors
     /// - A page of the other library cannot be read or breaks a rule.
-    /// - A new name breaks a rule, or the library already has it, as for [`Self::add`].
+    /// - A new name breaks a rule, or the library already contains the name; the rules are the same
+    ///   as for [`Self::add`].
     pub fn add_library<S: LibrarySource + Send + 'static>(
         &mut self,
         library: Library<S>,
@@ -163,12 +165,12 @@ impl MemoryWriter {
         self.0.allows_unlicensed = true;
     }
 
-    /// Sets what the library says about itself.
+    /// Sets the library's metadata, as [`Writer::set_metadata`] does.
     pub fn set_metadata(&mut self, metadata: LibraryMetadata) {
         self.0.metadata = metadata;
     }
 
-    /// Describes each texture by this function, as [`Writer::describe_with`] does.
+    /// Sets the function that computes descriptions, as [`Writer::describe_with`] does.
     pub fn describe_with(&mut self, describe: Describe) {
         self.0.describe = Some(describe);
     }

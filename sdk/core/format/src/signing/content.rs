@@ -1,4 +1,4 @@
-//! A signature of a file, in a file of its own.
+//! A signature of a file, stored in a separate file.
 
 use std::fmt::{Display, Formatter};
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{PublicKey, SecretKey};
 use crate::ReadError;
 
-/// What is added to the name of a file for the name of its signature: `oak.htex.sig`.
+/// The suffix that turns a file's name into the name of its signature file, as in `oak.htex.sig`.
 pub const SIGNATURE_EXTENSION: &str = "sig";
 
 /// The largest file with a signature, bytes.
@@ -42,27 +42,29 @@ impl Display for SignedKind {
     }
 }
 
-/// What a signature vouches for (`spec/signature-1.md`).
+/// What a signature vouches for: the kind, name, version and hash of a file
+/// (`spec/signature-1.md`).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SignedContent {
     pub kind: SignedKind,
     /// The id of a model or a device, or the name of an asset or a library.
     pub name: String,
-    /// The version of a model, a device or a library, else empty.
+    /// The version of a model, a device or a library; empty for an asset, and for a library that
+    /// states no version.
     pub version: String,
-    /// BLAKE3 in hexadecimal digits: of the file, but of a library's index if it is a library. The
-    /// index has the hash of each texture.
+    /// BLAKE3 in hexadecimal digits. For a library this is the hash of the index, and otherwise the
+    /// hash of the file. A library's index contains the hash of each texture.
     pub blake3: String,
 }
 
 impl SignedContent {
-    /// Returns what a signature of a plugin or a device vouches for.
+    /// Returns the content that a signature of a plugin or a device vouches for.
     pub fn plugin(kind: SignedKind, id: &str, version: &str, file: &[u8]) -> Self {
         let blake3 = blake3::hash(file).to_hex().to_string();
         Self { kind, name: id.to_owned(), version: version.to_owned(), blake3 }
     }
 
-    /// Returns what a signature of an asset's file vouches for.
+    /// Returns the content that a signature of an asset's file vouches for.
     ///
     /// # Errors
     /// If the bytes are not an asset.
@@ -71,7 +73,7 @@ impl SignedContent {
         Ok(Self::plugin(SignedKind::Asset, &asset.manifest.name, "", file))
     }
 
-    /// Returns what a signature of a library vouches for.
+    /// Returns the content that a signature of a library vouches for.
     #[cfg(feature = "library")]
     pub fn library(index: &crate::library::Index) -> Self {
         Self {
@@ -133,7 +135,7 @@ impl FileSignature {
     /// Parses a file with a signature.
     ///
     /// # Errors
-    /// If the bytes are not such a file of version 1.
+    /// If the bytes are not a signature file of version 1.
     pub fn from_json(bytes: &[u8]) -> Result<Self, SignatureError> {
         if bytes.len() > MOST_BYTES {
             return Err(SignatureError::Malformed(format!("more than {MOST_BYTES} bytes")));
@@ -155,7 +157,7 @@ impl FileSignature {
     /// Returns the key that signed this content.
     ///
     /// # Errors
-    /// If the signature is of another content, or is invalid.
+    /// If the signature belongs to other content, or is invalid.
     pub fn check(&self, content: &SignedContent) -> Result<PublicKey, SignatureError> {
         let told = &self.content;
         if told.blake3 != content.blake3 {

@@ -1,4 +1,5 @@
-//! Signatures: of a model that an asset embeds, and of files in a file of their own.
+//! Signatures of models and files. A model's signature is part of the asset that embeds the model;
+//! a file's signature is in a separate file.
 
 mod content;
 mod key;

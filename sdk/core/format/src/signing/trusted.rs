@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::PublicKey;
 
-/// A key with the name that its user gave it.
+/// A public key, and the name that the user gave the key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrustedKey {
-    /// Lower-case letters, digits and hyphens, a letter first; at most 64.
+    /// At most 64 lower-case letters, digits and hyphens; the first character is a letter.
     pub name: String,
     pub public_key: PublicKey,
-    /// Whether the user no longer trusts it. It is kept, so that what it signed is refused.
+    /// Whether the user has revoked the key and no longer trusts it. A revoked key stays in the
+    /// list, so that the program refuses everything that the key signed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub revoked: bool,
 }
@@ -42,7 +43,8 @@ impl TrustedKeys {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// Returns what the user said of a key.
+    /// Returns the entry for a public key, or `None` if the user has neither trusted nor revoked
+    /// the key.
     pub fn of(&self, key: &PublicKey) -> Option<&TrustedKey> {
         self.keys.iter().find(|known| known.public_key == *key)
     }
@@ -50,7 +52,8 @@ impl TrustedKeys {
     /// Adds a key.
     ///
     /// # Errors
-    /// If the name is invalid, or name or key are known already and differ.
+    /// If the name is invalid or belongs to another key, or if the key is revoked or has another
+    /// name.
     pub fn trust(&mut self, name: &str, key: PublicKey) -> Result<(), String> {
         check_key_name(name)?;
         if let Some(known) = self.of(&key) {
@@ -83,10 +86,10 @@ impl TrustedKeys {
     }
 }
 
-/// Refuses a name that is no name of a key. Such a name is also a safe name for a file.
+/// Checks that a name is a valid name for a key. A valid name is also safe as a file name.
 ///
 /// # Errors
-/// If it is none. The text says what a name is.
+/// If it is none. The error text says which names are valid.
 pub fn check_key_name(name: &str) -> Result<(), String> {
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
     let is_name = name.len() <= 64

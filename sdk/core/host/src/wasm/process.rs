@@ -65,9 +65,9 @@ pub(super) fn compile(
 }
 
 /// Compiles the module on standard input and writes the result to standard output. A host starts
-/// the program that [`WasmCompiler::Program`](crate::WasmCompiler) names, with the arguments of
-/// that variant and with its own arguments after them. `arguments` contains only the host's own
-/// arguments. On Unix, the process first limits its memory and its processor time.
+/// the program that [`WasmCompiler::Program`](crate::WasmCompiler) names. The host passes the
+/// arguments of that variant first, and then its own arguments. `arguments` contains only the
+/// host's own arguments. On Unix, the process first limits its memory and its processor time.
 ///
 /// ```no_run
 /// let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -1,8 +1,8 @@
 //! Models that describe a spectrum by a curve and play it as noise.
 //!
-//! Every type that implements [`ShapedModel`] also implements [`Model`]. It names a type that
-//! implements [`Curve`]. This module derives the magnitude at unit RMS, the sample rate and the
-//! voice ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
+//! Every type that implements [`ShapedModel`] also implements [`Model`]. Such a type names another
+//! type, which implements [`Curve`]. This module derives the magnitude at unit RMS, the sample rate
+//! and the voice ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
 mod places;
 
 use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
@@ -203,8 +203,9 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 /// then writes no power, the old spectrum continues without an error. Detect invalid parameters in
 /// [`set`](Self::set) if that is cheap.
 pub trait Curve: Sized + Send + 'static {
-    /// Makes the curve of these parameters in a band. It may allocate, but not if the type keeps
-    /// the default [`Self::set`], which calls it on the render thread.
+    /// Makes the curve of these parameters in a band. This function may allocate, except if the
+    /// type keeps the default [`Self::set`], because the default calls this function on the render
+    /// thread.
     ///
     /// # Errors
     /// If the parameters describe no spectrum, i.e. the curve is zero or not finite everywhere in
@@ -228,8 +229,8 @@ pub trait Curve: Sized + Send + 'static {
     /// and not negative.
     fn magnitude_at(&self, frequency_hz: f64) -> f64;
 
-    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::magnitude_at`]. The default
-    /// computes it; override it to return a stored value.
+    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::magnitude_at`]. The
+    /// default implementation computes this RMS; override the function to return a stored value.
     fn level(&self) -> f64 {
         curve_level_rms(self.band(), |hz| self.magnitude_at(hz))
     }

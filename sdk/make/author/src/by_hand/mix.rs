@@ -31,14 +31,14 @@ impl MixedAsset<'_> {
 /// The result has the conditions of both textures. If only one texture has a condition, the
 /// parameters of the other texture are interpolated for this condition, as in a player. The law
 /// comes from the texture with the larger weight, or from `a` if the weights are equal. A texture
-/// may store triangles of conditions, in which a player interpolates. The result gets the triangles
-/// of the texture that gives the law, if that texture has exactly the conditions of the result.
-/// Otherwise the result has no stored triangles. In this case, a warning is added if one of the two
-/// textures had triangles.
+/// may store triangles of conditions. A player interpolates within these triangles. If the texture
+/// that gives the law has exactly the conditions of the result, the result gets the triangles of
+/// this texture. Otherwise the result has no stored triangles. In this case, htex adds a warning if
+/// one of the two textures had triangles.
 ///
 /// # Errors
-/// When the weight is out of range, the textures have no model in common, their quantity or band
-/// differs, or a model cannot mix its parameters.
+/// When the weight is out of range, when the textures have no model in common, when their
+/// quantities or bands differ, or when a model cannot mix its parameters.
 pub fn mix(
     a: MixedAsset<'_>,
     b: MixedAsset<'_>,

@@ -19,7 +19,7 @@ const HIGHEST_HZ: f64 = 20_000.0;
 #[non_exhaustive]
 pub struct ByHand {
     pub name: String,
-    /// Values by field name. For a field that is a list, all values of the list.
+    /// Values by field name. If a field is a list, its entry contains all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit.
     pub level_rms: f64,
@@ -46,7 +46,7 @@ impl ByHand {
         }
     }
 
-    /// Sets a parameter. For a parameter that is a list, sets all its values.
+    /// Sets a parameter. If the parameter is a list, sets all values of the list.
     #[must_use]
     pub fn with(mut self, name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
         self.values.insert(name.into(), values.into());
@@ -124,7 +124,7 @@ pub struct ByHandModel {
 #[derive(Debug, Clone)]
 pub struct ByHandAt {
     pub condition: Condition,
-    /// Values by field name. For a field that is a list, all values of the list.
+    /// Values by field name. If a field is a list, its entry contains all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit. Optional for a model whose
     /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]).

@@ -2,13 +2,14 @@
 //! power in the band either leaks from lower frequencies or is far weaker than the power above the
 //! band.
 //!
-//! The spectrum of a 0.2 s segment under a Hann window cannot tell 15 Hz from 20 Hz, or a drift
-//! from noise. The spectrum of a segment of one second can, with a window whose side lobes are 92
-//! dB down (four-term Blackman-Harris; Harris 1978). The check compares the power in the band that
-//! the two windows show. In 240 third-party recordings of fingers, tools and microphones, the short
-//! segments show at most 4.3 dB more power than the long windows. If the normal forces and
-//! positions of such fingers are read as a texture, the short segments show at least 32 dB more.
-//! For noise of 1 to 15 Hz, they show at least 11 dB more.
+//! The spectrum of a 0.2 s segment under a Hann window cannot distinguish 15 Hz from 20 Hz, or a
+//! drift from noise. The spectrum of a one-second segment can distinguish them, with a window whose
+//! side lobes are 92 dB down (four-term Blackman-Harris; Harris 1978). The check computes the power
+//! in the band with each of the two windows, and compares the two powers. In 240 third-party
+//! recordings of fingers, tools and microphones, the short segments show at most 4.3 dB more power
+//! than the long windows. If the normal forces and positions of such fingers are read as a texture,
+//! the short segments show at least 32 dB more. For noise of 1 to 15 Hz, the short segments show at
+//! least 11 dB more.
 
 use std::f64::consts::TAU;
 

@@ -1,6 +1,6 @@
 //! Sums and maxima of long signals. A sum is computed as eight independent partial sums, so that no
-//! addition waits for the result of the one before it. The order of the additions changes only the
-//! last digits of a sum. No finding depends on these digits.
+//! addition waits for the result of the previous addition. The order of the additions changes only
+//! the last digits of a sum. No finding depends on these digits.
 
 const LANES: usize = 8;
 

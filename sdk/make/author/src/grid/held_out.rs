@@ -1,5 +1,5 @@
 //! Prediction of left-out blocks of time. The error of this prediction is a measure of the grid's
-//! error. It can be computed without knowing the true texture.
+//! error. This error can be computed even if the true texture is unknown.
 
 use htex_dsp::Band;
 use htex_dsp::bands::rms;

@@ -1,5 +1,5 @@
-//! The lines of a grid, i.e. its speeds and forces. The lines are given by the user, or chosen from
-//! the motions of the steady windows.
+//! The lines of a grid, i.e. its speeds and forces. The user gives the lines, or this module
+//! chooses them from the motions of the steady windows.
 
 use super::request::Grid;
 use crate::AuthorError;

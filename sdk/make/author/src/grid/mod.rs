@@ -2,17 +2,18 @@
 //!
 //! Recordings are cut into windows of 0.2 s. Windows with nearly constant speed and force
 //! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`). Each
-//! cell with enough windows becomes a condition. Small differences between a window's motion and
-//! the crossing are corrected in two ways. Each window's length is chosen so that all windows cover
-//! the same path (`paths`). Each window's energies are corrected by the texture's measured
+//! cell with enough windows becomes a condition. In a window, the motion differs slightly from the
+//! crossing. Two steps correct this difference. Each window's length is chosen so that all windows
+//! cover the same path (`paths`). Each window's energies are corrected by the texture's measured
 //! dependence on speed and force (`slopes`). The number of speed lines is chosen so that the grid
 //! best predicts left-out blocks of time (`folds`, `held_out`, `search`).
 //!
 //! A player interpolates in the Delaunay mesh of the conditions. This method is from the Penn
 //! Haptic Texture Toolkit (Culbertson, Unwin and Kuchenbecker 2014). The toolkit fits segments of
 //! nearly constant motion and places the fitted models in the plane of speed and force. For each
-//! model, `leave_out` compares the left-out blocks with what a player would play in their place.
-//! The error of this comparison can be measured without knowing the true texture.
+//! model, `leave_out` compares each left-out block with the spectrum that a player would play in
+//! place of the block. The error of this comparison can be measured without knowing the true
+//! texture.
 
 mod cells;
 mod folds;

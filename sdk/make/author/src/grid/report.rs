@@ -17,8 +17,8 @@ use crate::conditions::{ConditionSpectrum, four_digits};
 pub enum CellStatus {
     /// The cell has enough windows.
     Fitted,
-    /// The cell itself has too few windows, but it has enough if the nearest windows of
-    /// neighbouring cells are added.
+    /// The cell itself has too few windows. Together with the nearest windows of neighbouring
+    /// cells, it has enough.
     Widened,
     /// The cell has too few windows and did not become a condition.
     Thin,
@@ -37,8 +37,8 @@ pub struct GridCell {
     /// Number of windows that were averaged, including windows from neighbouring cells; 0 for a
     /// cell with too few windows.
     pub averaged: usize,
-    /// Repeatability of the cell's spectrum, decibels: the RMS over nine bands of the difference
-    /// between the odd and the even blocks of the windows, divided by √2.
+    /// Repeatability of the cell's spectrum, decibels: the RMS difference between the odd and the
+    /// even blocks of the windows, over nine bands, divided by √2.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
     /// Index of the cell's condition in the asset; `None` for a cell with too few windows.
@@ -57,12 +57,13 @@ pub struct GridReport {
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
-    /// Held-out error, decibels. Blocks of time are left out, and a player predicts their spectra
-    /// by interpolating between the recorded spectra of the other blocks. The error is the RMS
-    /// difference in third octaves. `None` if the blocks have too few windows.
+    /// Held-out error, decibels. To measure this error, blocks of time are left out. A player
+    /// predicts the spectra of these blocks by interpolating between the recorded spectra of the
+    /// other blocks. The error is the RMS difference in third octaves. `None` if the blocks have
+    /// too few windows.
     pub left_out_rms_db: Option<f64>,
     /// The held-out error of an asset with a single condition, decibels. This condition is the mean
-    /// of all steady windows, scaled to each motion by the law. A useful grid has a smaller
+    /// of all steady windows. The law scales this mean to each motion. A useful grid has a smaller
     /// held-out error than this single condition.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, ordered by speed and then by force.

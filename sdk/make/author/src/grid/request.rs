@@ -28,9 +28,9 @@ impl Grid {
     /// Parses one or more texts such as `auto`, `speed=40,80,160` (mm/s) or `force=0.3,0.6` (N).
     ///
     /// # Errors
-    /// Returns an error if a text has none of these forms, or if an axis is given twice. Also returns
-    /// an error if a speed or a force is not above 0, is not finite, is too large, or differs from
-    /// another one by less than 5 %.
+    /// Returns an error if a text has none of these forms, or if an axis is given twice. Also
+    /// returns an error if a speed or a force is not above 0, is not finite, is too large, or
+    /// differs by less than 5 % from another value of the same axis.
     pub fn parse<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Self, AuthorError> {
         let mut grid = Self::default();
         for text in texts {

@@ -1,4 +1,5 @@
-//! Choice of a grid's lines: the fewest lines that best predict the left-out blocks of time.
+//! Choice of a grid's lines: a grid with more lines is chosen only if it predicts the left-out
+//! blocks of time better.
 
 use htex_dsp::bands::rms;
 use htex_format::Condition;

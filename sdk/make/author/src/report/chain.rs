@@ -37,9 +37,9 @@ pub struct ChainStage {
     pub name: String,
     /// Why the stage runs.
     pub reason: String,
-    /// Sample rate of its output, hertz.
+    /// Sample rate of the stage's output, hertz.
     pub rate_hz: f64,
-    /// Its computing time, nanoseconds per sample.
+    /// Computing time of the stage, nanoseconds per sample.
     pub ns_per_sample: f64,
 }
 

@@ -64,7 +64,7 @@ pub fn code_block(text: &str) -> String {
     Element::new("pre").child(&code).render()
 }
 
-/// Returns a link to an `https://` address, or the text if it is none.
+/// Returns a link if the text is an `https://` address, and otherwise a paragraph with the text.
 pub fn link(address: &str) -> String {
     if !address.starts_with("https://") {
         return paragraph(address);
@@ -73,7 +73,7 @@ pub fn link(address: &str) -> String {
     Element::new("p").child(&link).render()
 }
 
-/// Returns a player of a sound, or a picture, in a file beside the page.
+/// Returns an audio player or a picture for a file beside the page, depending on the file's type.
 pub fn preview(path: &str) -> String {
     let is_sound = [".wav", ".flac", ".mp3", ".ogg"].iter().any(|end| path.ends_with(end));
     if is_sound {

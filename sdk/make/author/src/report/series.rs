@@ -33,8 +33,8 @@ pub struct Series {
     pub marker_hollow: bool,
     /// Whether hovering over a point shows its values.
     pub hover: bool,
-    /// Hover texts, one for each point, shown instead of the point's values. A point without a text
-    /// shows its values.
+    /// Hover texts, one for each point. A point shows its hover text instead of its values. A point
+    /// without a text shows its values.
     pub notes: Vec<String>,
 }
 

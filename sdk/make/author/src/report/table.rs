@@ -41,7 +41,7 @@ pub enum Cell {
     Shaded(f64, &'static str),
     /// A value without a shade.
     Plain(f64),
-    /// Text, with smaller text below it unless the second string is empty.
+    /// Text. If the second string is not empty, it is shown below the text in a smaller size.
     Text(String, String),
     /// An unknown value.
     Missing,
@@ -72,7 +72,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the table as an HTML element. Its frame scrolls if the page is too narrow.
+    /// Returns the table as an HTML element. The table's frame scrolls if the page is too narrow.
     pub fn to_html(&self) -> String {
         let table = Element::new("table")
             .child(&Element::new("caption").text(&self.caption))

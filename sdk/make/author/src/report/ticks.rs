@@ -16,8 +16,8 @@ pub struct Tick {
 
 /// Returns the ticks of an axis, increasing and within `low` to `high`. Steps are 1, 2 or 5 times a
 /// power of ten, and about `count` ticks have labels. A log axis has ticks at 1, 2 and 5 of each
-/// decade, with minor ticks between these. If there are many decades, it has ticks only at whole
-/// decades.
+/// decade, with minor ticks between these. If the range covers many decades, the axis has ticks
+/// only at whole decades.
 pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (low, high) = sound_range(Some((low, high)), scale);
     let count = count.clamp(2, 50) as f64;

@@ -92,7 +92,7 @@ settings! {
         ))]
         pub storage: Option<Coding> = "storage",
 
-        /// Whether to fit only the recorded conditions, and none that are computed from them.
+        /// Whether to fit only the recorded conditions, without conditions computed from them.
         #[cfg_attr(feature = "clap", arg(
             long = "recorded-only",
             action = clap::ArgAction::SetTrue,
@@ -116,9 +116,9 @@ settings! {
         ))]
         pub grid: Option<Vec<String>> = "grid",
 
-        /// Whether to refuse recordings with findings that are errors or warnings. A recipe sets
-        /// this in its gates. On the command line, the flag `--strict` belongs to the options for
-        /// reading recordings.
+        /// Whether to refuse recordings with findings that are errors or warnings. In a recipe,
+        /// this setting is one of the gates (requirements that an asset must meet). On the command
+        /// line, the flag `--strict` belongs to the options for reading recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
@@ -317,8 +317,8 @@ impl FitSettings {
 }
 
 /// Returns the models with these names, each once. `all`, or an empty list, means the default
-/// models ([`Registry::by_default`]). Among the default models, those that the running program has
-/// registered itself come last, such as models written in Python.
+/// models ([`Registry::by_default`]). Models that the running program has registered itself, such
+/// as models written in Python, come last among the default models.
 ///
 /// # Errors
 /// When a model is unknown.

@@ -58,7 +58,7 @@ impl TryFrom<Exponents> for GivenLaw {
 }
 
 impl GivenLaw {
-    /// Returns `law` with its exponents replaced by the given ones.
+    /// Returns `law`, with the given exponents in place of its own.
     #[must_use]
     pub fn over(&self, law: Law) -> Law {
         let given = |given: Option<f64>, own: Exponent| given.map_or(own, Exponent::given);

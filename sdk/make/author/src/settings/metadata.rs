@@ -74,8 +74,8 @@ settings! {
         ))]
         pub finger: Option<String>,
 
-        /// Whether a finger or a tool slid over the surface. This decides which law is assumed for
-        /// motions that were not recorded.
+        /// Whether a finger or a tool slid over the surface. The contact decides which law is
+        /// assumed for motions that were not recorded.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_enum,

@@ -9,9 +9,8 @@ use crate::{Averaging, Level, SegmentChoice};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
-    /// Everything as in the paper (Balasubramanian & Vardar 2026), where htex has other defaults:
-    /// the paper's five models, sweeps, averaged magnitudes, and the options in
-    /// [`Preset::options`].
+    /// The paper's choices (Balasubramanian & Vardar 2026) where htex has other defaults: the
+    /// paper's five models, sweeps, averaged magnitudes, and the options in [`Preset::options`].
     Paper,
 }
 
@@ -33,8 +32,9 @@ impl Preset {
         }
     }
 
-    /// Returns the options that differ from the models' defaults: model, option, value. Some are
-    /// assumptions, because the paper does not state them; `docs/paper.md` marks these as "open".
+    /// Returns the options that differ from the models' defaults: model, option, value. Some values
+    /// are assumptions, because the paper does not state them; `docs/paper.md` marks these values
+    /// as "open".
     pub const fn options(self) -> &'static [(&'static str, &'static str, &'static str)] {
         match self {
             Self::Paper => &[

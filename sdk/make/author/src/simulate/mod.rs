@@ -1,14 +1,15 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. The paper's Results
-//! describe five surfaces: which are stronger, and at which frequencies their energy lies. The five
-//! simulated surfaces agree with this description. No real surface was measured for them. Every
-//! simulated file states that it is simulated.
+//! Use them for tests, examples and first steps without a recording rig. For five surfaces, the
+//! paper's Results state which are stronger and at which frequencies their energy lies. The five
+//! simulated surfaces agree with this description. The simulation does not use measurements of real
+//! surfaces. Every simulated file states that it is simulated.
 //!
-//! The hand's speed and force vary. The friction coefficient is a fixed relief along the surface,
-//! which is read at the finger's position. Therefore the frequencies of the spectrum scale with the
-//! speed, and its level scales with the force, unless [`Departures`] are set. The friction force
-//! then passes through models of skin, rig and sensor.
+//! The hand's speed and force vary. A fixed relief gives the friction coefficient at each position
+//! along the surface. The simulation reads the relief at the finger's position. Therefore the
+//! frequencies of the spectrum are proportional to the speed, and the level of the spectrum is
+//! proportional to the force. [`Departures`] can change both. The friction force then passes
+//! through models of skin, rig and sensor.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};

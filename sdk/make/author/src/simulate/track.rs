@@ -1,5 +1,5 @@
-//! An endless relief. Because it is read along the finger's path, the finger never touches the same
-//! place twice.
+//! An endless relief. The relief is generated along the finger's path, so the finger never touches
+//! the same place twice.
 
 use std::f64::consts::PI;
 

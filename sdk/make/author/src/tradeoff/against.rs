@@ -8,7 +8,7 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::point::Point;
 use crate::tradeoff::setting::Keep;
 
-/// The cost that is plotted on the horizontal axis against the error.
+/// The cost on the horizontal axis, against which the error is plotted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
     /// Size of the stored parameters, bytes. For this cost, the error relative to the fitted

@@ -1,5 +1,5 @@
-//! Contenders of a sweep. A contender is a model with a setting, or a baseline. It can be fitted to
-//! a recording, stored and played.
+//! Contenders of a sweep. A contender is a model with a setting, or a baseline. Every contender can
+//! be fitted to a recording, stored and played.
 
 use crate::{AuthorError, Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;

@@ -8,15 +8,15 @@ use serde::{Serialize, Serializer};
 /// An error by which settings are judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorAxis {
-    /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
-    /// with the even blocks in third octaves. The unit is the difference between the odd and the
-    /// even blocks of the recording, so a model with an error of 1 is as good as a second
-    /// recording.
+    /// Held-out error: the model is fitted to the odd blocks of a recording and played. The result
+    /// is compared with the even blocks in third octaves. The unit of this error is the difference
+    /// between the odd and the even blocks of the recording. A model with an error of 1 is
+    /// therefore as good as a second recording.
     #[default]
     HeldOut,
     /// Error relative to the spectrum to which the setting was fitted, in decibels. In a comparison
     /// with the size in bytes, the error is measured on the model's magnitudes. In a comparison
-    /// with the time, it is measured on rendered samples.
+    /// with the time, the error is measured on rendered samples.
     Fitted(ErrorMeasure),
 }
 

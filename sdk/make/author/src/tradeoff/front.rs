@@ -2,9 +2,9 @@
 
 /// Returns which points of (cost, error) are on the Pareto front. A point is on the front if no
 /// other point is better. Another point is better if it has less cost and at most the same error,
-/// or less error and at most the same cost. A point with a number that is not finite is never on
-/// the front. Several points may have the same cost and the same error. Then either all of these
-/// points are on the front, or none of them.
+/// or less error and at most the same cost. A point is never on the front if its cost or its error
+/// is not finite. Several points may have the same cost and the same error. Then either all of
+/// these points are on the front, or none of them.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| finite(&points[i])).collect();

@@ -96,7 +96,7 @@ pub struct Tradeoff {
 }
 
 impl Tradeoff {
-    /// Marks the fronts of a sweep over `subjects` and finds their knees.
+    /// Marks the fronts of a sweep over `subjects`, and finds the knees of these fronts.
     pub fn new(tool: &str, subjects: &[Subject], swept: SweepResult) -> Self {
         let SweepResult { error, mut points, left_out } = swept;
         for subject in subjects {
@@ -140,8 +140,8 @@ impl Tradeoff {
         self.points.iter().filter(|p| p.recording == recording).collect()
     }
 
-    /// Returns the points of the summary: the medians or, if there is only one recording, its
-    /// points.
+    /// Returns the points of the summary: the medians or, if there is only one recording, the
+    /// points of this recording.
     pub fn summary(&self) -> Vec<&Point> {
         let points = if self.medians.is_empty() { &self.points } else { &self.medians };
         points.iter().collect()

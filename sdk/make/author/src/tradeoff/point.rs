@@ -23,7 +23,7 @@ pub struct Point {
     pub recording: String,
     /// Short name of the model, `quantised-spectrum` or [`RECORDING`].
     pub model: String,
-    /// The values of all knobs, including those at their defaults.
+    /// The values of all knobs, including knobs that have their default value.
     pub knobs: BTreeMap<String, Value>,
     /// The knobs whose values differ from their defaults, as text.
     pub setting: String,
@@ -46,14 +46,14 @@ pub struct Point {
     pub bytes: usize,
     /// Memory that the playback needs for a stored loop or a filter, bytes.
     pub kept_bytes: usize,
-    /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
-    /// with the even blocks in third octaves. The unit is the difference between the odd and the
-    /// even blocks of the recording, so a model with an error of 1 is as good as a second
-    /// recording. `None` if there are too few blocks.
+    /// Held-out error: the model is fitted to the odd blocks of a recording and played. The result
+    /// is compared with the even blocks in third octaves. The unit of this error is the difference
+    /// between the odd and the even blocks of the recording. A model with an error of 1 is
+    /// therefore as good as a second recording. `None` if there are too few blocks.
     pub held_out_error: Option<f64>,
     /// The held-out error in decibels.
     pub held_out_error_db: Option<f64>,
-    /// The measures of the model's magnitudes: all of [`Measure::of_both`].
+    /// All measures of [`Measure::of_both`], computed on the model's magnitudes.
     #[serde(flatten, serialize_with = "of_magnitudes")]
     pub by_magnitude: Measures,
     /// Shares of the recordings with a small difference. For a single recording, a share is 0 or 1.
@@ -74,7 +74,8 @@ pub struct Point {
 /// recording is small. Each share is from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
-    /// Share of the recordings that cannot be felt at all. The two shares below leave them out.
+    /// Share of the recordings that cannot be felt at all. `below_threshold` and
+    /// `below_threshold_if_sensitive` leave these recordings out.
     #[serde(rename = "share_not_felt")]
     pub below_detection: f64,
     /// Share of the recordings whose difference is below the difference threshold, in every third
@@ -114,12 +115,12 @@ impl Shares {
     }
 }
 
-/// Returns those measures of a point that are errors.
+/// Returns the measures of a point that are errors.
 pub fn errors() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged == MeasureKind::Error)
 }
 
-/// Returns those measures of a point that are not errors.
+/// Returns the measures of a point that are not errors.
 pub fn others() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged != MeasureKind::Error)
 }

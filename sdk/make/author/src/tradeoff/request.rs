@@ -8,12 +8,13 @@ use htex_host::LoadedModel;
 use crate::AuthorError;
 use crate::tradeoff::{ErrorAxis, Subject};
 
-/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. For the first way, the model
-/// is measured with all values of the knobs; for the other ways, only with the default settings.
+/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The model that is loaded in
+/// the first way is measured with all values of the knobs. In the other ways, the model is measured
+/// only with the default settings.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Ways of loading, at least one. Each entry has the name of the way, and the model loaded in
-    /// this way.
+    /// Ways of loading, at least one. Each entry contains the name of the way, and the model that
+    /// was loaded in this way.
     pub ways: Vec<(String, LoadedModel)>,
 }
 
@@ -21,11 +22,11 @@ pub struct Model {
 #[derive(Debug, Clone)]
 pub struct Request {
     pub models: Vec<Model>,
-    /// Whether to measure less: only one knob is varied at a time, each with three values, and
+    /// Whether to measure less: only one knob is varied at a time, each knob has three values, and
     /// fewer runs are timed.
     pub quick: bool,
-    /// The error for fronts and knees. If `None`, the held-out error is used or, if a recording is
-    /// too short to hold a part of it out, the third-octave error of the fit.
+    /// The error for fronts and knees. If `None`, the held-out error is used. If a recording is too
+    /// short to hold out a part of it, the third-octave error of the fit is used instead.
     pub error: Option<ErrorAxis>,
     /// The file of the running program or library. A sweep does not continue a journal that another
     /// build of this program wrote.

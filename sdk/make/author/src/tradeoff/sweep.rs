@@ -42,7 +42,7 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 ///
 /// # Errors
 /// When the journal cannot be written, or when no model can be fitted to a recording. Also when the
-/// held-out error is requested but a recording is too short to hold a part of it out.
+/// held-out error is requested but a recording is too short to hold out a part of it.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,

@@ -1,5 +1,5 @@
-//! The two controls of an `.ahap` file over time, intensity and sharpness, and their effect on the
-//! file's events.
+//! Computes the two time-dependent controls of an `.ahap` file, intensity and sharpness, and
+//! applies them to the file's events.
 
 use super::{
     ControlPoint, Entry, Event, INTENSITY, INTENSITY_CONTROL, SHARPNESS, SHARPNESS_CONTROL,

@@ -4,13 +4,13 @@
 //!
 //! The code follows Apple's documentation (*Representing haptic patterns in AHAP files*;
 //! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). The intensity control multiplies the
-//! intensity of events, and the sharpness control is added to their sharpness. A control applies to
-//! all events from its first point on. Between points, the value of a control is linear. The times
-//! of a curve's points are relative to the start of the curve. Apple does not define physical
-//! meanings of intensity and sharpness. This module uses two existing conventions. An intensity is
-//! the square root of an amplitude, as in Meta's conversion (core/haptic_data/src/ahap.rs of
-//! facebook/meta-haptics-sdk). A sharpness is a position in a range of frequencies, as in the
-//! reference software of ISO/IEC 23090-31.
+//! intensity of events. The sharpness control is added to the sharpness of events. A control
+//! applies to all events from its first point on. Between points, the value of a control is linear.
+//! The times of a curve's points are relative to the start of the curve. Apple does not define
+//! physical meanings of intensity and sharpness. This module uses two existing conventions. An
+//! intensity is the square root of an amplitude, as in Meta's conversion
+//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk). A sharpness is a position in a
+//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
 
 mod control;
 mod write;

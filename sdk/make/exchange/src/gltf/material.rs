@@ -23,8 +23,9 @@ pub struct Material {
     /// on the surface a point lies.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Length on the surface, in millimetres, of one unit of the first and of the second texture
-    /// coordinate. If this property is missing, distances on the surface follow from the geometry.
+    /// Lengths on the surface, in millimetres, that correspond to one unit of the first texture
+    /// coordinate and one unit of the second. If this property is missing, distances on the surface
+    /// follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,

@@ -6,8 +6,8 @@
 //! source/IOHaptics/src/IOJson.cpp for keys and rules, source/Types/src/Effect.cpp for the sound of
 //! keyframes, and source/WaveletDecoder for wavelets. The names of perceptions come from
 //! draft-ietf-avtcore-rtp-haptics. The reader also accepts keys of earlier drafts (`tracks`,
-//! `mixing_weight`). The reader uses only the first perception of a file that is a vibration, and
-//! only the first channel of that perception.
+//! `mixing_weight`). The reader uses only the first perception that is a vibration and has a
+//! channel. From this perception, it uses only the first channel.
 
 mod check;
 mod number;

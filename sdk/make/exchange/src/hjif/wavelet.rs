@@ -3,9 +3,9 @@
 //! transform is repeated until the lowest band has four coefficients.
 //!
 //! The transform is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4),
-//! i.e. by four lifting steps and a scaling. Its inverse is therefore exact up to rounding. The
-//! scaling is the same as in the reference software (source/FilterBank/include/Wavelet.h): the
-//! coefficients of the low-pass filter sum to √2.
+//! i.e. by four lifting steps and a scaling. The inverse transform is therefore exact up to
+//! rounding. The scaling is the same as in the reference software
+//! (source/FilterBank/include/Wavelet.h): the coefficients of the low-pass filter sum to √2.
 
 /// The four lifting steps of the 9/7 transform.
 const STEPS: [f64; 4] =

@@ -21,8 +21,8 @@ const RESOLUTION: f64 = 1e-4;
 /// give equal bytes.
 const NO_DATE: &str = "1970-01-01";
 
-/// Whether the positions in a file are times or distances. A finger slides over the distances at a
-/// speed.
+/// Whether the positions in a file are times or distances. For distances, this type also states the
+/// speed of the finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
     /// Speed of the finger over a texture in space, mm/s. `None` stands for a vibration over time.

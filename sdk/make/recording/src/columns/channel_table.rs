@@ -29,9 +29,9 @@ pub struct ChannelTable {
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. The sample rate is taken from the options or, if the options have
-/// none, from the time column. If there is no time column either, the rate that the file states is
-/// used. The time column is not among the channels.
+/// Reads all channels of a file. The sample rate is taken from the options. If the options have no
+/// rate, it is computed from the time column. If there is also no time column, the rate that the
+/// file states is used. The time column is not among the channels.
 ///
 /// # Errors
 /// Returns the errors of [`read_recording`](crate::read_recording).

@@ -13,7 +13,7 @@
 //! and ends at a space or at an operator other than `/`. Products and quotients of columns are
 //! allowed, so an expression need not be linear.
 //!
-//! The expression is evaluated row by row. If a result is not finite, this is an error; the error
+//! The expression is evaluated row by row. A result that is not finite is an error, and the error
 //! names the row.
 
 use std::fmt;
@@ -26,8 +26,8 @@ const MOST_DEEP: usize = 32;
 /// to evaluate them.
 const MOST_STEPS: usize = 256;
 
-/// An expression from which a role's values are computed: a single column, or sums, differences,
-/// products and quotients of columns and numbers.
+/// An expression that computes a role's values: a single column, or sums, differences, products and
+/// quotients of columns and numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     text: String,
@@ -68,8 +68,8 @@ impl Expression {
         }
     }
 
-    /// Returns the text of the expression as the user wrote it. If a file has a column with exactly
-    /// this name, the text means that column.
+    /// Returns the text of the expression as the user wrote it. If a file has a column whose name
+    /// is exactly this text, the text refers to this column.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

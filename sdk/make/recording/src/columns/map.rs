@@ -91,8 +91,8 @@ pub struct MapEntry {
     /// The column, or an expression over columns.
     pub values: Expression,
     /// Factor that converts the values to the role's unit (N, the quantity's unit, mm/s, s, mm).
-    /// Without a factor, a column has the unit in its name, and the values of an expression must
-    /// already be in the role's unit.
+    /// Without a factor, the unit in a column's name determines the conversion, but the values of
+    /// an expression must already be in the role's unit.
     pub scale: Option<f64>,
 }
 
@@ -128,10 +128,10 @@ impl MapEntry {
 
 /// Column map: the user's assignment of columns to roles.
 ///
-/// The values of a role are a column, or an expression over columns. An expression consists of
-/// sums, differences, products and quotients of numbers and columns, with parentheses. A column is
-/// given by its name, its number (`#3`) or its path (`/run1/fx`). A name that contains an operator
-/// must be in quotes, except if the name is the whole text.
+/// A role takes its values from a column, or from an expression over columns. An expression
+/// consists of sums, differences, products and quotients of numbers and columns, with parentheses.
+/// A column is given by its name, its number (`#3`) or its path (`/run1/fx`). A name that contains
+/// an operator must be in quotes, except if the whole expression consists of this name.
 ///
 /// ```
 /// # use htex_recording::ColumnMap;

@@ -11,8 +11,8 @@ const WINDOW_S: f64 = 0.05;
 /// mm. Both coordinates must have the same number of samples.
 ///
 /// The position is first averaged over 50 ms. The speed at a sample is the change of this average
-/// over the 50 ms around the sample, divided by the time. Near the ends of the recording, both
-/// windows are shorter.
+/// over a window of 50 ms around the sample, divided by the length of the window. Near the ends of
+/// the recording, both windows are shorter.
 pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();

@@ -40,8 +40,8 @@ impl RowMap {
     /// is an empty text. If the name also contains a unit, the unit in the name takes precedence.
     ///
     /// # Errors
-    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. `source` is the
-    /// name of the channels' origin in messages.
+    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. `source` names
+    /// the origin of the channels in messages.
     pub fn new(
         source: &str,
         channels: &[(String, String)],

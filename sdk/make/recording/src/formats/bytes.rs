@@ -1,4 +1,4 @@
-//! Reads numbers of either byte order from files. The sizes that a file states are not trusted.
+//! Reads numbers of either byte order from files. No function trusts the sizes that a file states.
 
 use std::io::{self, ErrorKind, Read};
 

@@ -1,5 +1,6 @@
-//! Reader of NumPy arrays (NPY): shape `(n,)` or `(n, channels)`, of type f4, f8, i2 or i4, or
-//! records of shape `(n,)` whose fields have these types.
+//! Reader of NumPy arrays (NPY): numbers or records. An array of numbers has the shape `(n,)` or
+//! `(n, channels)`, and the type f4, f8, i2 or i4. An array of records has the shape `(n,)`, and
+//! its fields have these types.
 
 use std::io::{BufReader, ErrorKind, Read, copy, sink};
 

@@ -1,6 +1,6 @@
 //! Lengths of structures in Thrift's compact protocol
 //! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), in which
-//! Parquet writes its headers. The lengths are checked before the crate `parquet` reads the
+//! Parquet writes its headers. This module checks the lengths before the crate `parquet` reads the
 //! headers, because that crate trusts the number of elements that a list states.
 
 /// Deepest allowed nesting of structures and lists.

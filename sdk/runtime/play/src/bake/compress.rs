@@ -2,11 +2,12 @@
 //! filters.
 //!
 //! The filters of the conditions are projected on the leading eigenvectors of the matrix of their
-//! inner products. An inner product is the product of two filters' responses, weighted by the mean
-//! inverse power at each frequency. Because of this weight, an error counts as much in a faint
-//! frequency band as in a loud band. Projection is linear, so for a motion between conditions, the
-//! player mixes projected filters with the same weights as original filters. Weights and
-//! coefficients are stored as 16-bit integers with a scale.
+//! inner products. An inner product is the sum, over all frequencies, of the product of two
+//! filters' responses, weighted by the mean inverse power at each frequency. Because of this
+//! weight, an error counts as much in a faint frequency band as in a loud band. Projection is
+//! linear. For a motion between conditions, the player can therefore mix the projected filters with
+//! the same weights as the original filters. Weights and coefficients are stored as 16-bit integers
+//! with a scale.
 
 use std::ops::RangeInclusive;
 

@@ -62,8 +62,8 @@ pub struct BakeResult {
     pub law: Law,
     /// The fluctuation in time that the block plays.
     pub fluctuation: Option<Fluctuation>,
-    /// Ceiling of the level, in the asset's unit: beyond the grid, the scaling law raises the level
-    /// at most to the ceiling.
+    /// Ceiling of the level, in the asset's unit. Beyond the grid, the scaling law never raises the
+    /// level above this ceiling.
     pub ceiling: f64,
     /// A magnitude that samples rarely exceed while the motion is within the grid.
     pub full_scale: f64,
@@ -75,17 +75,18 @@ pub struct BakeResult {
     pub filters: usize,
     /// Number of sinusoids; 0 for noise.
     pub tones: usize,
-    /// Largest error at the conditions, dB, of the nine frequency bands in which spectra are
-    /// compared. Only bands within 40 dB of the strongest band count.
+    /// Largest error, dB, at the conditions, in any of the nine frequency bands in which spectra
+    /// are compared. Only bands within 40 dB of the strongest band count.
     pub at_conditions_db: f64,
-    /// Largest error of the nine bands midway between conditions, dB. Such errors occur because the
-    /// model interpolates parameters between conditions, whereas the player mixes filters or
-    /// sinusoids.
+    /// Largest error, dB, midway between conditions, in any of the nine bands. Such errors occur
+    /// because the model interpolates parameters between conditions, whereas the player mixes
+    /// filters or sinusoids.
     pub between_db: f64,
-    /// Largest error of the nine bands at half the lowest and twice the highest speed of the grid,
-    /// dB. At these speeds, the scaling law changes the frequencies of the texture, but the player
-    /// cannot change the frequencies of a filter. `None` if the law does not change frequencies,
-    /// and for sinusoids, whose frequencies the player can change.
+    /// Largest error, dB, at half the lowest and at twice the highest speed of the grid, in any of
+    /// the nine bands. At these speeds, the scaling law changes the frequencies of the texture, but
+    /// the player cannot change the frequencies of a filter. `None` if the law does not change
+    /// frequencies, or if the block contains sinusoids, because the player can change their
+    /// frequencies.
     pub beyond_db: Option<f64>,
     /// Lowest and highest recorded speed, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
@@ -95,8 +96,9 @@ pub struct BakeResult {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BakeLimits {
-    /// Largest allowed error of the nine bands midway between conditions, dB. Conditions are
-    /// inserted until the error is within this limit, or until there are 64 conditions.
+    /// Largest allowed error, dB, midway between conditions, in any of the nine bands in which
+    /// spectra are compared. Conditions are inserted until the error is within this limit, or until
+    /// there are 64 conditions.
     pub within_db: f64,
     /// Largest number of coefficients of a noise filter, which bounds the time per sample.
     pub longest: usize,
@@ -123,8 +125,8 @@ impl BakeLimits {
         Self { longest, ..self }
     }
 
-    /// Sets whether the block plays the fluctuation in time that the asset states. If it does, its
-    /// full scale is higher.
+    /// Sets whether the block plays the fluctuation in time that the asset states. The fluctuation
+    /// raises the block's full scale.
     #[must_use]
     pub fn with_fluctuation(self, fluctuation: bool) -> Self {
         Self { fluctuation, ..self }

@@ -9,18 +9,18 @@
 //! # Ok::<(), htex_play::Error>(())
 //! ```
 //!
-//! A block for noise contains filters instead of a model. White noise through a symmetrical filter
-//! at a low rate can have the spectrum of any noise model, and such a filter is always stable. A
-//! weighted sum of two filters has the weighted sum of their responses, so the player does not need
-//! the formula of any model.
+//! A block for noise contains filters instead of a model. White noise that passes through a
+//! symmetrical filter at a low rate can have the spectrum of any noise model. Such a filter is
+//! always stable. The response of a weighted sum of two filters is the weighted sum of their
+//! responses, so the player does not need the formula of any model.
 //!
 //! Because mixing is linear, a block stores only a few filters, and each condition mixes them. For
 //! example, a block of the model `bands` with the 60 conditions of `tests/it/bake_sizes.rs` takes
 //! 16 kB. The block would take 77 kB if it stored a separate filter in single precision for each
-//! condition. For the AR model, a lattice filter would need less computation. But the AR model
-//! interpolates line spectral frequencies, so the spectra of a lattice filter would differ from the
-//! model's between conditions. If the mixed filters differ from the model by more than the limit in
-//! [`BakeLimits`], conditions are inserted there.
+//! condition. For the AR model, a lattice filter would need less computation. But between
+//! conditions, the spectra of a lattice filter would differ from the model's spectra, because the
+//! AR model interpolates line spectral frequencies. Where the mixed filters differ from the model
+//! by more than the limit in [`BakeLimits`], further conditions are inserted.
 #![forbid(unsafe_code)]
 
 mod compress;

@@ -1,4 +1,4 @@
-//! Amplitude modulation of a carrier, which prevents charge leakage (7 kHz in the paper).
+//! Amplitude modulation of a carrier (7 kHz in the paper), which prevents charge leakage.
 
 use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;

@@ -1,5 +1,5 @@
-//! Scales frequencies with the scanning speed, by the asset's scaling law, if the speed is outside
-//! the recorded speeds.
+//! Scales frequencies by the asset's scaling law if the scanning speed is outside the recorded
+//! range.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Scales the level with speed and normal force, by the asset's scaling law, if the motion is
-//! outside the recorded motions.
+//! Scales the level by the asset's scaling law if the speed or the normal force is outside the
+//! recorded range.
 
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@
 //! the model's rate, before resampling. Frequency scaling is the only stage whose ratio of input
 //! samples to output samples changes.
 //!
-//! A scene needs the fluctuation of its textures only if it switches this effect on.
+//! The fluctuation of textures is needed only in a scene that switches this effect on.
 //!
 //! A scene may switch on an effect that is not needed. An effect that is not needed changes no bit
 //! of the samples, or changes them by at most 1e-6 of full scale

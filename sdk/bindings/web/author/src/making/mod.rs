@@ -1,4 +1,4 @@
-//! The functions that make textures, by name.
+//! The table of the functions that make textures, with the names by which JavaScript calls them.
 
 mod bake;
 mod describe;

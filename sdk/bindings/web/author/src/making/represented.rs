@@ -1,5 +1,5 @@
-//! Describes the models of a new texture. The description of a model states how much of its
-//! difference from the fitted data a fingertip can feel.
+//! Describes the models of a new texture. For each model, the description states how much of the
+//! difference between the model and the fitted data a fingertip can feel.
 
 use htex_author::FeltError;
 use htex_format::{Asset, HeldOut, LeftOut, Quality};

@@ -3,9 +3,9 @@
 //!
 //! The parser of the crate `toml` is recursive. The parser itself limits the nesting to 80 levels,
 //! but counts the levels wrongly in two cases. After a syntax error, a closing bracket without an
-//! opening bracket lowers the count, so that 7,200 lines of `motion = { const']` overflowed a stack
-//! of 8 MiB. The levels of each dotted key are counted separately, so that 80 nested tables with 80
-//! names each make 6,400 levels.
+//! opening bracket lowers the count. For example, 7,200 lines of `motion = { const']` overflowed a
+//! stack of 8 MiB. The parser also counts the levels of each dotted key separately, so it accepts
+//! 80 nested tables with 80 names each, which make 6,400 levels.
 //!
 //! Therefore this module counts the brackets and dots of a text before it parses the text
 //! (`nesting.rs`). A text with more than [`MOST_LEVELS`] levels is an error. No other module may
@@ -24,7 +24,8 @@ use toml::{Spanned, de};
 pub use nesting::MOST_LEVELS;
 use nesting::check_nesting;
 
-/// An error in a TOML text and its place. Its text has the form `line 3, column 5: …`.
+/// An error in a TOML text, with its line and column. The error's text has the form `line 3, column
+/// 5: …`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlError {
     /// The line, counted from 1.

@@ -1,12 +1,12 @@
-//! Limits how deep the parser can recurse, by counting tokens before it runs.
+//! Limits how deep the parser can recurse, by counting tokens before the parser runs.
 
 use toml_parser::Source;
 use toml_parser::lexer::{Token, TokenKind};
 
 use super::{TomlError, place};
 
-/// Largest nesting depth of a TOML text. Both brackets and the dots of keys count as levels of
-/// nested tables and arrays. Recipes and studies have at most 8 levels.
+/// Largest nesting depth of a TOML text. Each enclosing bracket and each dot in a key counts as one
+/// level of nesting. Recipes and studies have at most 8 levels.
 pub const MOST_LEVELS: usize = 24;
 
 /// An open bracket.

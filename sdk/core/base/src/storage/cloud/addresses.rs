@@ -3,10 +3,10 @@
 //!
 //! The user may name any address in an argument or in an environment variable. A file such as a
 //! recipe may name only public addresses and the server that the user named. Servers may redirect
-//! only to the same addresses. Without this rule, an untrusted file could cause requests inside the
-//! user's network, to the machine itself, and to the metadata service of the cloud in which the
-//! machine runs. The rule applies to the address to which a name resolves, because the connection
-//! goes to this address.
+//! only to addresses that such a file may name. Without this rule, an untrusted file could cause
+//! requests inside the user's network, to the machine itself, and to the metadata service of the
+//! cloud in which the machine runs. The rule applies to the IP address to which a host name
+//! resolves, because the program connects to this address.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 

@@ -1,7 +1,7 @@
 //! Turns a failed request into an error that says what to do.
 //!
-//! Messages contain only a status and a code, because responses and the library's own errors quote
-//! signatures and keys.
+//! Messages contain only a status and a code. They never quote responses or the library's own
+//! errors, because these contain signatures and keys.
 
 use std::io;
 use std::time::Instant;

@@ -60,8 +60,8 @@ pub struct Texture {
     pub unit: String,
     /// Speed and force as text: `"80 mm/s, 0.40 N"`.
     pub condition: String,
-    /// Text that says whether a finger or a tool slid over the texture, and how frequencies and
-    /// level follow motions that were not recorded. May be empty.
+    /// Text that says whether a finger or a tool slid over the texture. It also says how
+    /// frequencies and level follow motions that were not recorded. May be empty.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,

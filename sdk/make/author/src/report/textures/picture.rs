@@ -13,7 +13,7 @@ const PANEL: (f64, f64) = (230.0, 190.0);
 const CAPTION_PX: f64 = 26.0;
 
 /// Draws each texture's recording, overlaid with each of the named models, as a self-contained SVG.
-/// If a texture lacks a model, its panel stays empty.
+/// If a texture lacks a model, the panel for this texture and model stays empty.
 pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
     let width = PANEL.0 * textures.len() as f64;
     let height = PANEL.1 * short_names.len() as f64 + CAPTION_PX;

@@ -89,7 +89,7 @@ impl TrustedKeys {
 /// Checks that a name is a valid name for a key. A valid name is also safe as a file name.
 ///
 /// # Errors
-/// If it is none. The error text says which names are valid.
+/// If the name is invalid. The error text says which names are valid.
 pub fn check_key_name(name: &str) -> Result<(), String> {
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
     let is_name = name.len() <= 64

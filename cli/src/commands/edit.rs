@@ -19,7 +19,7 @@ use crate::outputs::check_outputs;
 /// Change an asset's metadata
 ///
 /// The command changes only the metadata and extensions that you give. An empty text removes an
-/// entry, e.g. --author "". The flag --tag replaces all tags of the asset. Parameters, recorded
+/// entry other than the name, e.g. --author "". The flag --tag replaces all tags of the asset. Parameters, recorded
 /// spectra and embedded models with their signatures stay the same, byte for byte. The flag
 /// --storage changes the bytes of the parameters, but not their values.
 #[derive(Args)]

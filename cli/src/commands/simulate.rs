@@ -14,7 +14,7 @@ use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
 ///
-/// The recording is meant for experiments. The signal imitates a finger that slides over a surface:
+/// Use the recording to try out htex. The signal imitates a finger that slides over a surface:
 /// the sum contains friction, the texture at the finger's position, the resonance of a rig, and
 /// sensor noise. The recording is not a measurement, and its file states that it is simulated.
 #[derive(Args)]

@@ -27,8 +27,9 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that apply to every kind of document. Each kind of document has its own codes for
-/// these rules.
+/// The rules that every kind of document must obey. A violation of the same rule has a different
+/// error code in each kind of document, so each kind supplies its own rules. Each field says what
+/// violates the rule.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.

@@ -14,7 +14,7 @@ use crate::study::lines::{DeviceUsed, Header, Line, SourceUsed, VERSION};
 use crate::study::plan::ParticipantPlan;
 use crate::study::read::files_of;
 
-/// Returns the path of a participant's answers in a folder: `P07.jsonl`.
+/// Returns the path of the file with a participant's answers, e.g. `FOLDER/P07.jsonl`.
 pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
     folder.join(format!("{participant}.jsonl"))
 }

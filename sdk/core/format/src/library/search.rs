@@ -31,9 +31,9 @@ pub struct Duplicate {
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Returns the textures of a quantity whose spectra are nearest to a given spectrum: at most
-    /// `most` textures, the nearest first. The function considers only textures that match the
-    /// query and have a spectrum.
+    /// Searches the textures that have the given quantity, and returns those with the nearest
+    /// spectra to a given spectrum: at most `most` textures, the nearest first. The function
+    /// considers only textures that match the query and have a spectrum.
     ///
     /// ```no_run
     /// # use htex_format::library::{Library, Query};

@@ -1,4 +1,4 @@
-//! Detection of recordings whose level differs from the level of the other recordings at the same
+//! Detection of recordings whose level differs from the median level of all recordings at the same
 //! condition.
 
 use htex_base::finding::Findings;

@@ -19,10 +19,10 @@ pub(crate) struct FeltArgs {
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// `normalised`: a texture is equally strong with every model. `own`: each model is as strong
-    /// as the energy of its own spectrum, so the models differ in strength. With `own`, the drive
-    /// voltage applies to the model with which the gain of --person was found; without --person, it
-    /// applies to the strongest model
+    /// `normalised`: a texture is equally strong with every model. `own`: the energy of a model's
+    /// own spectrum determines how strong the texture is with this model, so the models differ in
+    /// strength. With `own`, the drive voltage applies to the model with which the gain of --person
+    /// was found; without --person, it applies to the strongest model
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }

@@ -41,8 +41,9 @@ pub(crate) struct ChoiceArgs {
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
 
-    /// Factor that converts values from the assets' unit to the device's unit, if their quantities
-    /// differ. For example, 0.1 plays an acceleration of 1 m/s2 as a force of 0.1 N
+    /// Factor that converts values from the assets' unit to the device's unit, if the assets and
+    /// the device have different quantities. For example, 0.1 plays an acceleration of 1 m/s2 as a
+    /// force of 0.1 N
     #[arg(long, value_name = "GAIN", help_heading = "Devices")]
     quantity_gain: Option<f64>,
 }

@@ -23,11 +23,11 @@ const MOST: i64 = BakeLimits::MOST as i64;
 /// Writes a block of bytes, from which a small player on the microcontroller renders samples (see
 /// docs/microcontroller.md).
 ///
-/// The block stores the texture at a grid of conditions. A condition is a pair of a speed and a
-/// force. Between the conditions, the player interpolates. The command prints the size of the block
-/// and two nine-band errors: one at the conditions, and one midway between the conditions. The
-/// nine-band error compares the spectrum of the block with the spectrum of the asset in nine
-/// frequency bands, and is the largest difference in any of these bands.
+/// A condition is a pair of a finger speed and a normal force. The block stores the texture at the
+/// conditions of a grid. Between the conditions, the player interpolates. The command prints the
+/// size of the block and its error in nine frequency bands: once at the conditions, and once midway
+/// between the conditions. This nine-band error is the largest difference between the spectrum of
+/// the block and the spectrum of the asset in any of the nine frequency bands.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
@@ -64,18 +64,19 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
-    /// Also store how much the texture's strength fluctuates over time, if the asset states this
-    /// (`htex info`). The player then makes the texture stronger and weaker, with the same mean
-    /// level. Nobody has felt yet whether this makes a texture more real
+    /// Also store how much the texture's strength fluctuates over time, if the asset contains this
+    /// information (`htex info` shows it). The player then lets the strength of the texture
+    /// fluctuate, with the same mean level. Nobody has felt yet whether this makes a texture more
+    /// real
     #[arg(long)]
     fluctuation: bool,
 
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). A C or Rust array
-    /// states licence and author in comments. For a .bin file, the command writes licence and
-    /// author to FILE.license
+    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). For a C or Rust
+    /// array, the command writes licence and author as comments into the file. For a .bin file, the
+    /// command writes licence and author to FILE.license
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 

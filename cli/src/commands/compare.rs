@@ -26,13 +26,14 @@ use crate::recordings::RecordingArgs;
 ///
 /// Measures the difference between a recording and each model of an asset, or between two
 /// recordings. For two assets, the command prints which metadata, conditions and models differ. It
-/// also compares the models that both assets have, at each condition of the first asset.
+/// also compares the models that both assets have, at each condition (a pair of a speed and a
+/// force) of the first asset.
 ///
 /// htex evaluates the models at the recording's speed and force if both are known. Otherwise htex
-/// evaluates the models at the asset's first condition (a pair of a speed and a force). If the
-/// first condition is silent, htex uses the strongest condition. The error `felt` counts only what
-/// a fingertip can feel: it compares, in third octaves, how far each spectrum is above the
-/// fingertip's detection threshold.
+/// evaluates the models at the asset's first condition. If the first condition is silent, htex uses
+/// the condition at which the texture is strongest. The error `felt` counts only what a fingertip
+/// can feel. It compares, in third octaves, how far each spectrum is above the fingertip's
+/// detection threshold.
 ///
 /// Two signals with equal spectra can still fluctuate differently. The command also compares how
 /// the power in third octaves rises and falls at 1 to 64 Hz (`fluct`), if the recordings last at

@@ -2,7 +2,8 @@ use clap::Args;
 
 use crate::failure::{Exit, Failure, Result};
 
-/// Compile the WASM module on standard input for the process that started this command (internal).
+/// Read a WASM module from standard input, and compile it for the process that started this command
+/// (internal).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct CompileModule {

@@ -18,10 +18,11 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata
 ///
-/// The command changes only the metadata and extensions that you give. An empty text removes an
-/// entry other than the name, e.g. --author "". The flag --tag replaces all tags of the asset. Parameters, recorded
-/// spectra and embedded models with their signatures stay the same, byte for byte. The flag
-/// --storage changes the bytes of the parameters, but not their values.
+/// The command changes only the metadata and extensions that you give. To remove an entry, give an
+/// empty text, e.g. --author "". Only the name cannot be removed. The flag --tag replaces all tags
+/// of the asset. Parameters, recorded spectra and embedded models with their signatures stay the
+/// same, byte for byte. The flag --storage changes the bytes of the parameters, but not their
+/// values.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset

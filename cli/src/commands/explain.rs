@@ -26,7 +26,8 @@ pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
 /// prints what the finding means and what to do about it.
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// The code, as `htex validate` prints it. Without a code, the command lists all codes
+    /// The code of the finding, as `htex validate` prints it. Without a code, the command lists all
+    /// codes
     code: Option<String>,
 }
 

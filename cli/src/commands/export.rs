@@ -33,8 +33,8 @@ use crate::scene_sound::{Scene, is_scene};
 /// the file states.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset or the scene to export. A scene also states the motion and the models. LIBRARY#GLOB
-    /// exports several textures of a library
+    /// The asset or the scene to export. Unlike an asset, a scene also contains the motion of the
+    /// finger and says which models play. LIBRARY#GLOB exports several textures of a library
     #[arg(value_parser = located::ASSETS)]
     asset: PathBuf,
 

@@ -25,8 +25,8 @@ use crate::report::{ReportSource, measures, shares};
 /// Writes an asset (.htex) that contains the models and the measured error of each model.
 ///
 /// A condition of a texture is a pair of a speed and a force. If several recordings have the same
-/// speed and the same force within 5 %, htex averages these recordings to one condition. Every
-/// other recording becomes a condition of its own.
+/// speed and the same force within 5 %, htex averages these recordings and stores the average as
+/// one condition. Every other recording becomes a condition of its own.
 #[derive(Args)]
 pub(crate) struct Fit {
     #[arg(help = format!("Recordings of one texture: {}", format_names()))]
@@ -55,8 +55,8 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "NAME|FILE", requires = "embed_plugin", display_order = 6)]
     sign_with: Option<String>,
 
-    /// Draw the grid that --grid fits, as an SVG picture over speed and force. The picture shows
-    /// the parts of the recordings with steady motion, the fitted conditions with their
+    /// Draw the grid that --grid fits, as an SVG picture with the axes speed and force. The picture
+    /// shows the parts of the recordings with steady motion, the fitted conditions with their
     /// repeatability, and the mesh between the conditions
     #[arg(long, value_name = "SVG", requires = "grid", display_order = 8)]
     grid_svg: Option<PathBuf>,

@@ -21,8 +21,8 @@ const LARGE_STEP_DB: f64 = 4.0;
 
 /// Find a participant's preferred gain
 ///
-/// The participant touches the display and adjusts how strong the texture is. htex stores this
-/// gain, and `htex play --person` plays with the stored gain.
+/// The participant touches the display and adjusts the gain, i.e. how strong the texture is. htex
+/// stores the gain, and `htex play --person` plays with the stored gain.
 ///
 /// The texture plays until you accept a gain. Type `+` or `-` and press Enter to make the texture 1
 /// dB stronger or weaker. Type `++` or `--` and press Enter to make it 4 dB stronger or weaker.

@@ -23,9 +23,9 @@ use crate::plugins::PluginArgs;
 /// asset, htex extracts this asset unchanged.
 ///
 /// A file of any other format is a signal or an image that does not state its units, speed and
-/// force. Give the physical value of its full scale (--full-scale), and the speed and the force at
-/// which the texture is to be felt (--speed, --force). htex fits models to a signal as to a
-/// recording, and turns an image into a friction map.
+/// force. For such a file, give the physical value of the full scale (--full-scale), and the speed
+/// and the force at which the finger is to feel the texture (--speed, --force). htex fits models to
+/// a signal in the same way as to a recording, and converts an image to a friction map.
 ///
 /// Unless you give --license and --author, htex reads licence and author from the file, or from
 /// FILE.license next to the file. `htex formats` lists which parts of a texture each format keeps.

@@ -11,9 +11,9 @@ use crate::output::{print, show};
 
 /// Make keys, and say whose signatures you trust
 ///
-/// A key signs assets, libraries and plugins (`htex sign`). Give other people its public half,
-/// which is 64 hexadecimal digits. The keys are in the folder `keys` of your settings
-/// (`~/.config/htex`, or the folder in HTEX_CONFIG_DIR).
+/// A key signs assets, libraries and plugins (`htex sign`). So that other people can check your
+/// signatures, give them the public half of the key: 64 hexadecimal digits. The keys are in the
+/// folder `keys` inside your settings folder (`~/.config/htex`, or the folder in HTEX_CONFIG_DIR).
 #[derive(Args)]
 pub(crate) struct Key {
     #[command(subcommand)]

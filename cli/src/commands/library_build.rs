@@ -26,10 +26,11 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
 ///
-/// Fits the recordings that the recipe names. Also imports files of other formats that the recipe
-/// names, as `htex import` does. Writes the library (DIR/NAME.htexlib), each texture as a file (in
-/// DIR/textures), a report (DIR/build-report.json) and a catalogue (DIR/index.html). If the build
-/// fails, the report contains the error. A recipe may name its recordings and other files by URI.
+/// Fits models to the recordings that the recipe names. Also imports files of other formats that
+/// the recipe names, as `htex import` does. Writes the library (DIR/NAME.htexlib), each texture as
+/// a file (in DIR/textures), a report (DIR/build-report.json) and a catalogue (DIR/index.html). If
+/// the build fails, the report contains the error. A recipe may name its recordings and other files
+/// by URI.
 ///
 /// Finished fits stay in DIR/.htex-build. If a build was killed, run the same command again: the
 /// new build continues from these fits. A repeated build fits only the textures that have changed.

@@ -14,7 +14,7 @@ use crate::plugins::PlayerArgs;
 /// Make a texture between two others
 ///
 /// For each model that both textures have, htex interpolates between the parameters of the two
-/// textures. The interpolation is the same as between the recorded speeds and forces of one
+/// textures. htex interpolates in the same way between the recorded speeds and forces of one
 /// texture. The new asset states the names of the two textures.
 #[derive(Args)]
 pub(crate) struct Mix {

@@ -48,9 +48,9 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 
-    /// Make the textures stronger and weaker over time, as in their recordings, if the assets state
-    /// how much. Their mean level stays the same. Nobody has felt yet whether this makes a texture
-    /// more real
+    /// Let the strength of the textures fluctuate over time as in their recordings, if the assets
+    /// contain this fluctuation. The fluctuation does not change the mean level. Nobody has felt
+    /// yet whether this makes a texture more real
     #[arg(long)]
     fluctuation: bool,
 

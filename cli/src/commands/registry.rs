@@ -40,8 +40,8 @@ impl Registry {
 /// Check the entries of a registry, and the files in it
 ///
 /// Checks each entry's keys and licence, and the BLAKE3 hash and the signature of each file in the
-/// registry. Also runs the checker on each model that is a WASM module. The exit status is 1 if
-/// something is wrong.
+/// registry. Also runs the checks of `htex plugin check` on each model that is a WASM module. The
+/// exit status is 1 if something is wrong.
 #[derive(Args)]
 pub(crate) struct Check {
     /// Folder of the registry

@@ -14,9 +14,9 @@ use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
 ///
-/// Use the recording to try out htex. The signal imitates a finger that slides over a surface:
-/// the sum contains friction, the texture at the finger's position, the resonance of a rig, and
-/// sensor noise. The recording is not a measurement, and its file states that it is simulated.
+/// Use the recording to try out htex. The signal imitates a finger that slides over a surface: it
+/// is the sum of friction, the texture at the finger's position, the resonance of a rig, and sensor
+/// noise. The recording is not a measurement, and its file states that it is simulated.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl

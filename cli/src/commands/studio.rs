@@ -25,8 +25,9 @@ const KEY: &str = "studio.key";
 /// The studio is a web page. htex serves the page on this machine only, until you press Ctrl-C. The
 /// command prints the address of the page, `http://NAME.localhost:8420/`. NAME depends on the
 /// folder of the page and on a secret key that htex stores for you. Therefore, other users of the
-/// machine cannot guess the address. Chromium, Edge and Firefox find this address. For another
-/// browser, such as Safari, add the line `127.0.0.1 NAME.localhost` to /etc/hosts.
+/// machine cannot guess the address. Chromium, Edge and Firefox resolve this address without
+/// further settings. For another browser, such as Safari, add the line `127.0.0.1 NAME.localhost`
+/// to /etc/hosts.
 ///
 /// `cargo xtask studio --out DIR` builds the page. The page sends requests only to its own address.
 #[derive(Args)]

@@ -42,9 +42,9 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
-    /// Make the texture stronger and weaker over time, as in its recording, if the asset states how
-    /// much (`htex info`). Its mean level stays the same. Nobody has felt yet whether this makes a
-    /// texture more real
+    /// Let the strength of the texture fluctuate over time as in its recording, if the asset
+    /// contains this fluctuation (`htex info` shows it). The fluctuation does not change the mean
+    /// level. Nobody has felt yet whether this makes a texture more real
     #[arg(long)]
     fluctuation: bool,
 

@@ -1,8 +1,8 @@
 //! A cache of the line spectral frequencies of filters.
 //!
 //! Computing these frequencies takes about ten times as long as all other steps of a parameter
-//! change. A motion between conditions interpolates the same few filters again and again, so a
-//! cache saves this time.
+//! change. While a motion is between the same conditions, the voice interpolates the same few
+//! filters again and again, so a cache saves this time.
 
 use htex_dsp::line_spectrum::lines_of_reflection;
 use htex_dsp::linear_prediction::step_down_in_place;

@@ -1,4 +1,4 @@
-//! The voice: white noise through the all-pole filter.
+//! The voice, which sends white noise through the all-pole filter.
 
 use htex_dsp::all_pole::{AllPole, Group};
 use htex_dsp::band_limit::PassedPower;

@@ -5,9 +5,9 @@
 //! Yule–Walker method. For the zeros, the fit inverts the spectrum, multiplies it by the spectrum
 //! of the poles, and again applies the Yule–Walker method. The fit computes the Itakura–Saito
 //! distance of each round at the level that minimises this distance. The fit keeps the round with
-//! the smallest distance. If the recording is Gaussian noise, its spectrum is most likely with the
-//! parameters of this round. No resonance is narrower than a bin, because the spectrum cannot show
-//! such a resonance.
+//! the smallest distance. If the recording is Gaussian noise, the parameters of this round have the
+//! largest likelihood of all rounds. No resonance is narrower than a bin, because the spectrum
+//! cannot show such a resonance.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! The voice: white noise through the zeros, then through the poles.
+//! The voice, which sends white noise through the zeros, then through the poles.
 //!
 //! When parameters change, the coefficients of the zeros and the reflection coefficients of the
 //! poles move linearly to their new values. Therefore, every filter during the change is stable.

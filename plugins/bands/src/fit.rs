@@ -1,10 +1,10 @@
 //! Fits the knots of the stored curve to the band energies of a recording.
 //!
 //! The cost has two terms. The first term is a sum over the bands: the squared logarithm of the
-//! fitted energy divided by the wanted energy. The second term is 1e-4 times a sum over the knots:
-//! the squared difference between the level of the knot and the mean level of its band. Both are
-//! logarithms of power. For noise, the fitted energies are within a hundredth of a decibel of the
-//! wanted energies. The second term determines the solution in two cases. In the first case, no
+//! ratio of the fitted energy to the wanted energy. The second term is 1e-4 times a sum over the
+//! knots: the squared difference between the level of the knot and the mean level of its band. Both
+//! are logarithms of power. For noise, the fitted energies are within a hundredth of a decibel of
+//! the wanted energies. The second term determines the solution in two cases. In the first case, no
 //! spectrum has the wanted energies. In the second case, only one spectrum has the wanted energies,
 //! but its knots differ by hundreds of decibels. This happens next to a spectral line.
 //!
@@ -12,14 +12,15 @@
 //! energies. The fit finds this spectrum with the Levenberg–Marquardt method. Files store the
 //! curve, not the energies, so a player does not have to solve equations. Rounding can give
 //! energies that no spectrum has, because bands share bins. Only the fit has to deal with such
-//! energies. The window of a measurement blurs the spectrum. Therefore, the voice sharpens its
-//! spectrum until a measurement shows the stated spectrum.
+//! energies. The window of a measurement blurs the measured spectrum. Therefore, the voice sharpens
+//! its spectrum until a measurement of its samples shows the spectrum that the file describes.
 //!
 //! We compared this fit with a maximum-likelihood fit to the bins, computed in Python (Whittle's
 //! method, which minimises the sum of `ln S + P / S`). We tested both fits on held-out data, from
 //! 32 third-party recordings that were cut into pieces of 0.2 s. First, the odd-numbered pieces
-//! were used for the fit and the even-numbered pieces for the test, and then the reverse. Knots
-//! were in steps of 1 dB. Roughness is a penalty on second differences of the logarithm of power.
+//! were used for the fit and the even-numbered pieces for the test, and then the reverse. The
+//! levels of the knots were rounded to steps of 1 dB. In the table, "roughness" is the weight of a
+//! penalty on second differences of the logarithm of power.
 //!
 //! | fit, knots | third octaves, dB | log-spectral distance, dB |
 //! |---|---|---|

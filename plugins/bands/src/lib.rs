@@ -3,11 +3,11 @@
 //!
 //! This model is not from the paper, and was not evaluated in perception experiments. The paper
 //! regresses ratings on energy differences in such bands (section "Linear regression"). The r² of
-//! this regression, which the paper calls low, no longer grows above nine bands. Thirty bands keep
-//! a spectrum within about 0.3 dB of the recording in third-octave bands. Files do not store the
-//! energies, but a curve with these energies. The curve is in decibels, and it is piecewise linear.
-//! Its frequency axis is the axis on which the bands are equally spaced. Its knots are at the
-//! bands' apexes.
+//! this regression, which the paper calls low, does not increase with more than nine bands. Thirty
+//! bands keep a spectrum within about 0.3 dB of the recording in third-octave bands. Files do not
+//! store the energies, but a curve with these energies. The curve is in decibels, and it is
+//! piecewise linear. Its frequency axis is the axis on which the bands are equally spaced. Its
+//! knots are at the bands' apexes.
 //!
 //! By default, there are thirty knots from edge to edge of the asset's frequency band. The levels
 //! of the knots are in steps of 1 dB, and the differences of levels are stored in a Rice code. The
@@ -73,7 +73,7 @@ const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
 /// Largest level difference, dB, between the loudest band and another band, and between the highest
 /// knot and another knot. A band without energy gets a level that is this far below the loudest
 /// band. The measure of band errors has the same limit, because it adds 1e-12 of the largest energy
-/// to every band.
+/// to every band, and 1e-12 is this limit as a ratio of energies.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {
@@ -231,7 +231,7 @@ fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
     libm::round(wanted_db / STEP_UNIT_DB).max(least) * STEP_UNIT_DB
 }
 
-/// The curve that a parameter set describes, on the grid.
+/// The curve that a parameter set describes, on the frequency grid.
 pub struct Spectrum {
     axis: Axis,
     points: Arc<[Point]>,

@@ -6,10 +6,10 @@
 //! its edges. Between pixels, the voice interpolates the friction with a cubic (Catmull and Rom),
 //! so that a finger feels no steps.
 //!
-//! The voice follows the finger's place (`htex.motion/1`). The voice subtracts the mean from the
-//! friction at this place and limits the result to the asset's frequency band. Without motion
-//! input, the voice scans the map row by row, at the speed in the parameters. The spectra and
-//! levels that the model reports also apply to this scan.
+//! The voice follows the finger's place, which it receives through the extension `htex.motion/1`.
+//! The voice subtracts the mean from the friction at this place and limits the result to the
+//! asset's frequency band. Without motion input, the voice scans the map row by row, at the speed
+//! in the parameters. The model reports the spectra and the levels of this scan.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

@@ -1,4 +1,4 @@
-//! The voice: renders the friction under the finger after subtracting the mean, limited to the
+//! The voice: renders the friction under the finger, without the mean friction and limited to the
 //! asset's frequency band.
 
 use htex_dsp::band_limit::{band_limit, band_limit_power};

@@ -1,10 +1,10 @@
-//! The distance in decibels between a beta density and the points of a fit, and a closed form for
-//! the density that is nearest to the points.
+//! The distance in decibels between a beta density and the points to fit, and a closed form for the
+//! density that is nearest to these points.
 //!
 //! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns α, β
 //! and scale. Therefore, the nearest density is the solution of a least-squares problem in which α
-//! and β are bounded. If a density is very faint at some point, its decibels are cut off at this
-//! point. The problem is then not linear, and the fit uses a search instead.
+//! and β are bounded. If a density is very faint at some point, a lower limit replaces its level at
+//! this point. The problem is then not linear, and the fit uses a search instead.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;

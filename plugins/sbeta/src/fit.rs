@@ -6,9 +6,10 @@
 //! It has two weaknesses: a fit of squared magnitudes follows only the strongest peaks, and peaks
 //! give no information about the frequencies between them. Each cell of the table has three errors
 //! in dB: the median, the mean and the largest. The columns headed "recordings" are about 32
-//! third-party recordings. The band of 24 of them is from 20 to 1000 Hz, and the band of the other
-//! eight from 60 to 1000 Hz. A band ends at half the sample rate if that is lower. The columns
-//! headed "simulated" are about 15 simulated recordings (five surfaces, three seeds).
+//! third-party recordings. In 24 of these recordings, the band is from 20 to 1000 Hz. In the other
+//! eight, the band is from 60 to 1000 Hz. If half the sample rate is lower than this upper end, the
+//! band ends at half the sample rate. The columns headed "simulated" are about 15 simulated
+//! recordings (five surfaces, three seeds).
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|
@@ -22,13 +23,14 @@
 //!
 //! If all peaks are on one side of the band, the density that fits the peaks best has a spike at
 //! frequencies without a peak. This spike is many decibels too high. Therefore, if the maximum of a
-//! fit to peaks is higher than twice the largest bin, a second fit is made to peaks and bins. To
-//! compare the two fits, each of them gets its best scale. The result is the fit with the smaller
-//! distance, in decibels, to the peaks and bins. The option `refit=never` keeps the first fit.
+//! fit to peaks is higher than twice the largest bin, the plugin makes a second fit, to peaks and
+//! bins. To compare the two fits, the plugin gives each fit the scale at which its distance is
+//! smallest. The result is the fit with the smaller distance, in decibels, to the peaks and bins.
+//! The option `refit=never` keeps the first fit.
 //!
-//! With `decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen such
-//! that the density has the energy of the points. If the density is still higher than twice the
-//! largest bin, its level is reduced until its maximum equals the largest bin.
+//! With `error=decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen
+//! such that the density has the energy of the points. If the density is still higher than twice
+//! the largest bin, its level is reduced until its maximum equals the largest bin.
 
 use alloc::vec::Vec;
 

@@ -60,7 +60,7 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,
-    /// What the output plays, in one word.
+    /// What the output plays, in one word that messages use.
     pub what: &'static str,
     pub feature: &'static str,
     /// The Linux package that is needed to build the device.

@@ -12,7 +12,7 @@
 //! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order of the
 //! descriptor. The host passes every setting, after it has applied the profile and the defaults.
 //!
-//! Samples of an output are `f32`. Samples of an input are `f64`. Samples of an input are also
+//! Samples of an output are `f32`. Samples of an input are `f64`. Samples of an input are
 //! interleaved: a frame consists of one sample of each channel, and the frames follow one another.
 
 /// Major version: a host loads only devices of its own major version.
@@ -156,10 +156,10 @@ pub type CapabilitiesJson = unsafe extern "C" fn(
     out: *mut u8,
     capacity: usize,
 ) -> i64;
-/// Passes samples to an output. The output takes the samples for which it has space within
-/// `timeout_ms`, and returns their number. With a timeout of 0, it takes the samples for which it
-/// has space now. The first samples start the output.
-/// `[one thread at a time for one device; may wait]`
+/// Passes samples to an output. The output takes as many samples as it has space for within
+/// `timeout_ms`, and returns their number. With a timeout of 0, it takes only as many samples as it
+/// has space for now. The first samples start the output. `[one thread at a time for one device;
+/// may wait]`
 pub type WriteFn =
     unsafe extern "C" fn(device: i64, samples: *const f32, frames: usize, timeout_ms: u32) -> i64;
 /// Writes up to `capacity` status numbers of an output to `out`, in the order of the indices

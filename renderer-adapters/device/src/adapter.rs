@@ -321,10 +321,10 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 ///
 /// [`Adapter`] has a complete example.
 pub trait Output: Send {
-    /// Takes the samples for which the output has space within `timeout`, and returns their number.
-    /// With a timeout of zero, it takes the samples for which it has space now, and does not wait.
-    /// The host may pass any number of samples, including none. The first samples start the output.
-    /// `[one thread at a time; may wait]`
+    /// Takes as many samples as the output has space for within `timeout`, and returns their
+    /// number. With a timeout of zero, it takes only as many samples as it has space for now, and
+    /// does not wait. The host may pass any number of samples, including none. The first samples
+    /// start the output. `[one thread at a time; may wait]`
     ///
     /// # Errors
     /// Returns an error if a sample is over the limit or not a number, if the output ran out of
@@ -335,7 +335,7 @@ pub trait Output: Send {
     /// `[one thread at a time]`
     fn status(&self) -> Status;
 
-    /// Plays all written samples, goes to zero and keeps the result (e.g. a file appears under its
+    /// Plays all written samples, goes to zero and keeps the result (e.g. gives a file its final
     /// name). Nothing can be written afterwards. `[one thread at a time; may wait]`
     ///
     /// # Errors

@@ -146,7 +146,7 @@ pub enum SettingKind {
 }
 
 impl SettingKind {
-    /// Creates the kind of a setting that has one of several values.
+    /// Creates the kind of a setting that allows only the listed values.
     pub fn choice(values: &[&str]) -> Self {
         Self::Choice { values: values.iter().map(ToString::to_string).collect() }
     }

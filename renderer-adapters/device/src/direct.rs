@@ -2,11 +2,11 @@
 //!
 //! A carrier protects a finger from charge and direct voltage. The carrier may be lost in many
 //! ways, such as a wrong rate, an effect, a clipped sample or a fault of the program. The mean
-//! voltage reveals all of these faults. Therefore, the last program part before the device limits
-//! the mean voltage. For NI cards, this part is the adapter's session; for native libraries, it is
-//! the host. If the mean voltage would exceed the limit, the samples are refused and the output
-//! goes to zero. The samples are not corrected, because a filter that removes the mean would hide
-//! the fault and change every sample.
+//! voltage reveals all of these faults. Therefore, the mean voltage is limited by the last part of
+//! the program through which the samples pass before they reach the device. For NI cards, this part
+//! is the adapter's session; for native libraries, it is the host. If the mean voltage would exceed
+//! the limit, the samples are refused and the output goes to zero. The samples are not corrected,
+//! because a filter that removes the mean would hide the fault and change every sample.
 
 use crate::Settings;
 

@@ -1,7 +1,7 @@
 //! The macro that exports an adapter.
 
-/// Generates C functions for a type that implements [`Adapter`](crate::Adapter) and `Default`, and
-/// the table `pub static TABLE` that lists these functions.
+/// For a type that implements [`Adapter`](crate::Adapter) and `Default`, generates the C functions
+/// of the ABI, and the table `pub static TABLE` that lists these functions.
 ///
 /// With `symbols: "FEATURE"`, building the crate with that Cargo feature also exports the function
 /// `htex_device_adapter`, which returns the table. A host loads a native library through this

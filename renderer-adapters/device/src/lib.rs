@@ -13,10 +13,10 @@
 //! Outputs and inputs share one ABI with one table of functions. Only outputs have `capabilities`,
 //! `write` and `status`. Only inputs have `stream`, `start` and `read`.
 //!
-//! Models run in a sandbox, but devices do not. A device does not have to produce the same bits on
-//! every computer, and a WASM sandbox without imports cannot reach any hardware. Therefore, the
-//! host calls built-in adapters directly. Errors of built-in adapters have the same types as errors
-//! of native libraries.
+//! Models run in a sandbox, but devices do not. A sandbox ensures that a model produces the same
+//! bits on every computer, which a device does not have to do. Also, a WASM sandbox without imports
+//! cannot reach any hardware. Therefore, the host calls built-in adapters directly, without a
+//! sandbox. Errors of built-in adapters have the same types as errors of native libraries.
 //!
 //! An output checks all samples of a call against its limits before it plays any of them. The host
 //! refuses a display voltage without a limit. After an error the output is at zero and stays there.

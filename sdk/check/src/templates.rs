@@ -1,8 +1,8 @@
 //! The project templates of `htex plugin new` and `htex device new`. The files of a template contain
 //! placeholders (`templates/README.md`), which [`Template::files`] fills in.
 
-/// A template in one programming language, for a model or a device that builds and passes its
-/// checker.
+/// A project template for a model or a device in one programming language. The project builds and
+/// passes its checker.
 pub struct Template {
     /// Paths relative to the project's folder, and file contents.
     files: &'static [(&'static str, &'static str)],

@@ -6,7 +6,7 @@ use htex_base::finding::Hint;
 
 use crate::response::Channel;
 
-/// The error of an experiment. Everything that was recorded or answered before the error stays on
+/// The error of an experiment. Recordings and answers that were made before the error remain on
 /// disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -34,7 +34,7 @@ pub enum LabError {
     #[error("{}: {problem}", .path.display())]
     Folder { path: PathBuf, problem: String },
 
-    /// The source or a tracker failed.
+    /// The source of the recorded signals, or a tracker, failed.
     #[error(transparent)]
     Source(#[from] htex_device::DeviceError),
     /// The channels of the source do not fit the column map, or a recording cannot be read.
@@ -168,7 +168,7 @@ pub enum LabError {
     )]
     Column { channel: Channel, problem: String },
     /// The input and the output name the same column, or the map of further columns contains an
-    /// axis (x, y or z) of a texture's signal, which a response does not have.
+    /// axis (x, y or z) of a texture's signal. A response has no such axes.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.
@@ -213,7 +213,7 @@ pub enum LabError {
         "{file}: the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
     )]
     Constant { file: String, channel: Channel, value: f64 },
-    /// No hit stands out from the input.
+    /// No part of the input is strong enough to count as a hit.
     #[error(
         "{file}: no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
     )]
@@ -280,8 +280,7 @@ pub enum LabError {
 }
 
 impl LabError {
-    /// Returns whether the cause of the error is a setting or an argument with a value that cannot
-    /// be used.
+    /// Returns whether an invalid value of a setting or an argument caused the error.
     pub fn is_usage(&self) -> bool {
         matches!(
             self,
@@ -294,7 +293,7 @@ impl LabError {
         )
     }
 
-    /// Returns the settings whose change may remove the error.
+    /// Returns the settings that a user can change to avoid the error.
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
             Self::Columns { .. } | Self::Constant { .. } => &["input", "output"],

@@ -29,8 +29,8 @@ const MOST_SAMPLES: usize = 1 << 24;
 
 /// Answer for one conformance file, as a program that `htex conformance run` tests
 ///
-/// Prints this program's answer for the file, as the JSON object that
-/// `spec/conformance-protocol.md` specifies. Compare this answer with the answer of your program.
+/// Prints htex's own answer for the file, as the JSON object that `spec/conformance-protocol.md`
+/// specifies. Compare this answer with the answer of your program.
 #[derive(Args)]
 pub(crate) struct Answer {
     /// Kind of the file: assets, libraries, scenes, recordings, baked, playing

@@ -10,10 +10,10 @@ use crate::failure::Result;
 
 /// Test third-party readers and players
 ///
-/// The specification comes with several hundred test files. For each file, the specification states
-/// what a reader must find in it, or what a player must play from it. `htex conformance run` starts
-/// your program once for each file, and counts the correct answers. `spec/conformance-protocol.md`
-/// says what your program must print.
+/// The specification comes with several hundred test files. For each file, the specification says
+/// what a reader must find in the file, or which numbers a player must compute from the file. `htex
+/// conformance run` starts your program once for each file, and counts the correct answers.
+/// `spec/conformance-protocol.md` says what your program must print.
 #[derive(Args)]
 pub(crate) struct Conformance {
     #[command(subcommand)]

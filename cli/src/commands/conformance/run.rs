@@ -16,20 +16,21 @@ const MOST_SECONDS: f64 = 86_400.0;
 
 /// Run a reader on the conformance files; exit status 1 if something differs
 ///
-/// Prints a table. The rows of the table are the conformance classes. A validator finds every
-/// mistake by its code and place. A reader accepts valid files and refuses invalid ones. A player
-/// computes the numbers that are played. The columns of the table are the kinds of files. Above the
-/// table, the command lists each file for which the answer of the reader is wrong, and what
-/// differs.
+/// Prints a table. The rows of the table are the conformance classes: validator, reader and player.
+/// A validator reports every mistake in a file, with the mistake's code and place. A reader accepts
+/// valid files and refuses invalid ones. A player computes the numbers with which a texture is
+/// played, such as its level. The columns of the table are the kinds of files. Above the table, the
+/// command lists each file for which the reader's answer is wrong, and how this answer differs from
+/// the correct one.
 ///
 /// Each run of the reader has a time limit and may print at most 16 MiB. When a run ends, htex also
-/// ends the processes of the reader that still run.
+/// ends all processes that the reader started and that still run.
 #[derive(Args)]
 pub(crate) struct Run {
-    /// Command line of the reader. No shell interprets the command line. Use quotation marks to
-    /// keep words together. {file} stands for the file, {part} for the kind of file (assets,
-    /// libraries, …), and {options} for the limits and arguments as JSON. Without {options}, the
-    /// few files that need options are left out
+    /// Command line of the reader. No shell interprets the command line. Put an argument that
+    /// contains spaces between quotation marks. {file} stands for the file, {part} for the kind of
+    /// file (assets, libraries, …), and {options} for the limits and arguments as JSON. Without
+    /// {options}, the few files that need options are left out
     #[arg(long, value_name = "COMMAND", value_parser = command_line)]
     command: CommandLine,
 

@@ -18,9 +18,10 @@ use crate::output::{print, print_json, tamed};
 /// HTEX_DEVICE_PATH, the user's folder, the folders of all users, the adapters built into this
 /// program. If two outputs or two inputs have the same id, htex uses only the first that it finds.
 ///
-/// The command does not load the libraries in folders. Instead, it reads the descriptor files
-/// beside these libraries, which `htex plugin export` and `htex plugin install` write. To list the
-/// connected devices of such a library, name the library with --device-file.
+/// The command does not load the native libraries that it finds in these folders. Instead, it reads
+/// the descriptor files beside these libraries, which `htex plugin export` and `htex plugin
+/// install` write. To list the connected devices of such a library, name the library with
+/// --device-file.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

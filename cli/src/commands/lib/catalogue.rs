@@ -28,12 +28,14 @@ const MOST_LEFT_OUT: usize = 1000;
 
 /// Make a catalogue of a library: a web page on which people search, see and play its textures
 ///
-/// Writes the page (DIR/index.html), and the library beside it. Each texture has an address of its
-/// own. The page reads only the parts of the library that it needs (HTTP range requests). The web
-/// server must answer such requests, and nearly all web servers do. If the library has at most 2
-/// MiB, the page also contains the library, so the page works when you open it from a disk.
+/// Writes the web page (DIR/index.html), and a copy of the library beside it. Each texture has its
+/// own web address. The page reads only the parts of the library that it needs (HTTP range
+/// requests). The web server must support such requests, and nearly all web servers do. If the
+/// library has at most 2 MiB, the page also contains the library, so you can open the page as a
+/// local file, without a web server.
 ///
-/// `cargo xtask studio --out DIR` builds the page that this command fills in.
+/// The command fills a template of the page with the data of the library. `cargo xtask studio --out
+/// DIR` builds this template.
 #[derive(Args)]
 pub(crate) struct Catalogue {
     /// The library

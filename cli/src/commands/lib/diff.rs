@@ -18,8 +18,8 @@ use crate::progress::bar;
 ///
 /// Prints `-` before a texture that only the first library has, `+` before a texture that only the
 /// second library has, and `~` before a texture that differs between the two libraries. With
-/// --details, the command also prints `>` before a texture that has only another name in the second
-/// library, and says what differs in each changed texture.
+/// --details, the command also prints `>` before a texture that differs only in its name, and says
+/// what differs in each changed texture.
 #[derive(Args)]
 pub(crate) struct Diff {
     /// Path or URI of the first library

@@ -21,8 +21,8 @@ use crate::progress::bar;
 /// Change a library: its textures, their metadata, and what it says about itself
 ///
 /// The command needs no recordings. It removes textures first, then renames and adds textures, and
-/// then changes metadata. All other textures stay the same, byte for byte. `htex lib pack` would
-/// write the same library from the changed textures.
+/// then changes metadata. All other textures stay the same, byte for byte. The result is the same
+/// library that `htex lib pack` would write from the resulting textures.
 ///
 /// GLOB is a name, or a pattern: `*` matches any text inside a part of a name, and `**` also matches
 /// across parts.
@@ -62,20 +62,20 @@ pub(crate) struct Edit {
     #[arg(long, value_name = "WORD")]
     remove_tag: Vec<String>,
 
-    /// Set metadata of single textures from a table. Its column `texture` has the names, and its
-    /// other columns are fields such as license. Empty cells change nothing. Tags are separated by
-    /// semicolons
+    /// Set metadata of single textures from a table. The column `texture` of this table contains
+    /// the names of the textures, and each other column contains a field such as license. Empty
+    /// cells change nothing. Tags are separated by semicolons
     #[arg(long, value_name = "CSV", value_parser = located::RECORDING)]
     table: Option<PathBuf>,
 
-    /// Remove, set and tag only textures with this property: name, tag, model, contact, license,
-    /// author or quantity, e.g. tag=rough or license=CC*. May be given several times; then a texture
-    /// must have all properties
+    /// Limit removing, setting metadata and tagging to textures with this property: name, tag,
+    /// model, contact, license, author or quantity, e.g. tag=rough or license=CC*. May be given
+    /// several times; then a texture must have all properties
     #[arg(long = "where", value_name = "FIELD=GLOB")]
     filters: Vec<Filter>,
 
     /// Set the library's own metadata: version, description, authors, homepage, source, changelog
-    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// or date, e.g. version=1.2. An empty value removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

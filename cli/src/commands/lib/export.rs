@@ -23,9 +23,9 @@ const TABLE: &str = "exported.csv";
 /// Export the textures of a library to files of other haptic formats
 ///
 /// For each texture and each format, the command writes a file NAME.EXTENSION into a folder. It
-/// also writes a table exported.csv, which says for each file what is lost. If a texture cannot be
-/// exported to a format, the table says why. The exit status is then 3, or 1 if no file was
-/// written.
+/// also writes a table exported.csv, which lists for each file the parts of the texture that the
+/// file lacks. If a texture cannot be exported to a format, the table says why. The exit status is
+/// then 3, or 1 if no file was written.
 #[derive(Args)]
 pub(crate) struct ExportAll {
     /// Path or URI of the library

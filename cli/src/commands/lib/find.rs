@@ -16,13 +16,13 @@ use crate::recordings::RecordingArgs;
 
 /// Search a library: list the textures that match all given words and options
 ///
-/// With --like, the command lists the textures whose spectra are most similar, with their distance
-/// in decibels. The distance is the RMS difference of the levels at 48 frequencies from 20 to 1000
-/// Hz, at the default condition of each texture. The command does not compare spectra of different
-/// quantities, such as force and acceleration.
+/// With --like, the command lists the textures whose spectra are most similar to the spectrum of
+/// the given texture, with their distance in decibels. The distance is the RMS difference of the
+/// levels at 48 frequencies from 20 to 1000 Hz, at the default condition of each texture. The
+/// command does not compare spectra of different quantities, such as force and acceleration.
 ///
-/// The command reads only the index of the library, and with --like and --duplicates also the
-/// spectra beside it.
+/// The command reads only the index of the library. With --like and --duplicates, it also reads the
+/// spectra that are stored beside the index.
 #[derive(Args)]
 pub(crate) struct Find {
     /// Path or URI of the library

@@ -9,8 +9,8 @@ use crate::output::note;
 ///
 /// The law of a texture describes how the texture changes at speeds and forces that were not
 /// recorded. The command prints the law as three exponents, e.g. `f^1 v^0 F^1`. The exponent of f
-/// states how the frequencies depend on the speed, the exponent of v how the level depends on the
-/// speed, and the exponent of F how the level depends on the force.
+/// states how the frequencies depend on the speed. The exponent of v states how the level depends
+/// on the speed. The exponent of F states how the level depends on the force.
 ///
 /// The command reads only the index of the library.
 #[derive(Args)]

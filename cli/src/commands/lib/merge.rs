@@ -18,9 +18,9 @@ use crate::outputs::check_outputs;
 /// All textures stay the same, byte for byte. `htex lib pack` would write the same library from all
 /// these textures. It is not a conflict if two libraries have the same texture under the same name.
 ///
-/// If you give folders that `htex build` wrote, the command writes a folder with the libraries,
-/// textures, sounds, reports and pages of all these folders, merged. In this way, several machines
-/// can each build a part of a library.
+/// If you give folders that `htex build` wrote, the command merges the libraries, textures, sounds,
+/// reports and pages of all these folders into one folder. In this way, several machines can each
+/// build a part of a library.
 #[derive(Args)]
 pub(crate) struct Merge {
     /// The libraries, or the folders of the builds
@@ -44,7 +44,7 @@ pub(crate) struct Merge {
     name: Option<String>,
 
     /// Set the library's own metadata: version, description, authors, homepage, source, changelog
-    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// or date, e.g. version=1.2. An empty value removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

@@ -23,10 +23,10 @@ use crate::progress::bar;
 /// Pack textures into a library.
 ///
 /// In the library, a texture has the name of its file, without `.htex`. A texture in a folder is
-/// named after its path in that folder, e.g. wood/oak. Textures of another library keep their names.
-/// The same textures give the same library, in
-/// any order and on any machine. Each texture must state a licence (`htex edit --license`), because
-/// libraries are meant to be passed on.
+/// named after its path in that folder, e.g. wood/oak. Textures that come from another library keep
+/// their names. The same textures give the same library, in any order and on any machine. Each
+/// texture must state a licence (`htex edit --license`), because libraries are meant to be passed
+/// on, and only its author may pass on a texture without a licence.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -43,7 +43,7 @@ pub(crate) struct Pack {
     name: Option<String>,
 
     /// Set the library's own metadata: version, description, authors, homepage, source, changelog
-    /// or date, e.g. version=1.2. An empty text removes the entry. May be given several times
+    /// or date, e.g. version=1.2. An empty value removes the entry. May be given several times
     #[arg(long, value_name = "ENTRY=TEXT")]
     describe: Vec<String>,
 

@@ -26,7 +26,7 @@ use crate::plugin_registry::{Fetched, PluginRegistry};
 /// wrong, it installs nothing.
 ///
 /// A WASM module can do nothing outside its sandbox. A native library can do everything that you
-/// can, so the command asks before it runs one.
+/// can, so the command asks for your permission before it runs a native library.
 #[derive(Args)]
 pub(crate) struct Install {
     /// A file, an address (https://), or the id of a plugin in the registry

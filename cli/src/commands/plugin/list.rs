@@ -17,12 +17,13 @@ use crate::plugins::PluginArgs;
 /// (`/usr/local/share/htex/plugins`, `/usr/share/htex/plugins`), the models built into this program.
 ///
 /// If several models have the same id, htex uses the first of these models that --plugin names. If
-/// --plugin names none of them, htex goes through the places in this order. The first place that
-/// has such a model determines the major version. htex then uses the newest of the models with this
-/// id and major version in all places.
+/// --plugin names none of them, htex goes through the places in the order above. The first place
+/// that has such a model determines the major version. htex then uses the newest of the models with
+/// this id and major version in all places.
 ///
-/// The command does not load the native libraries in folders. Instead, it reads the descriptors
-/// inside WASM modules, and the descriptor files beside native libraries (`htex plugin export`).
+/// The command does not load the native libraries that it finds in these folders. Instead, it reads
+/// the descriptors inside WASM modules, and the descriptor files beside native libraries (`htex
+/// plugin export`).
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

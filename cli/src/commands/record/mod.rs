@@ -32,7 +32,8 @@ use guide::{Guide, GuideArgs};
 /// htex stores takes as DIR/NAME-001.csv and so on. A JSON file next to each take contains all
 /// settings, and DIR/tracker contains the positions that the tracker measured. DIR/rejected
 /// contains the rejected takes, and DIR/incomplete the incomplete takes. During a take, htex writes
-/// to disk every second. After a crash, the next run of the command recovers the data on disk.
+/// the recorded samples to disk every second. After a crash, the next run of the command recovers
+/// the data on disk.
 #[derive(Args)]
 pub(crate) struct Record {
     /// Source of the signals: a recording to replay (file:rec.csv), analog inputs of a National

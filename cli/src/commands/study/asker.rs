@@ -12,7 +12,8 @@ use crate::output::tell;
 /// Size of a page's pixel by the definition of CSS, millimetres. Real screens differ.
 const CSS_PIXEL_MM: &str = "0.2646";
 
-/// Options that set where a session asks its questions, and where a live motion comes from.
+/// Options that set where a session asks its questions, and which source measures the finger's
+/// motion in a study with live motion.
 #[derive(Args)]
 #[command(next_help_heading = "Session")]
 pub(super) struct AskingArgs {

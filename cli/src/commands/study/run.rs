@@ -29,7 +29,8 @@ use crate::signals;
 /// Each answer is a line of the file DIR/PARTICIPANT.jsonl. htex writes the line to disk before the
 /// next trial begins. To continue a session that you left (q, Ctrl-C) or that was killed, run the
 /// same command again. If the study, one of its assets or the device has changed since the session
-/// began, htex refuses to continue. So a file never mixes answers to different versions.
+/// began, htex refuses to continue. Therefore, all answers in a file belong to the same version of
+/// the study.
 #[derive(Args)]
 pub(crate) struct Run {
     /// The study: study.toml

@@ -1,4 +1,4 @@
-//! The sound output adapter: its descriptor, and the code that opens a card.
+//! The sound output adapter: its descriptor, and the code that opens a sound card.
 
 use std::sync::LazyLock;
 

@@ -22,8 +22,8 @@ pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilit
     Card::find(device, Direction::Output)?.with_channels(channels)?.capabilities()
 }
 
-/// Opens an output with one channel for each factor. A channel plays the samples multiplied by the
-/// channel's factor.
+/// Opens an output with one channel for each factor in `factors`. A channel plays the samples
+/// multiplied by the channel's factor.
 ///
 /// # Errors
 /// Returns the same errors as [`capabilities_of_channels`]. Also returns an error if the output

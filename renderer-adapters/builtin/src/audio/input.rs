@@ -1,4 +1,4 @@
-//! The sound input adapter: its descriptor, and the code that opens a card.
+//! The sound input adapter: its descriptor, and the code that opens a sound card.
 
 use std::sync::LazyLock;
 

@@ -1,5 +1,5 @@
-//! Sound cards: outputs play textures as sound, and inputs are recorded. In the samples, 1 is full
-//! scale.
+//! Sound cards: their outputs play textures as sound, and their inputs record. In the samples, 1 is
+//! full scale.
 //!
 //! The adapters need the feature `audio`. On Linux, building this feature needs ALSA
 //! (`libasound2-dev`). Without the feature, the rest of the crate builds without ALSA, and the

@@ -1,4 +1,4 @@
-//! An open sound input: the part that runs in the reader's thread.
+//! The part of an open sound input that runs in the thread that reads the samples.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

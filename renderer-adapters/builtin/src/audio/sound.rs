@@ -1,4 +1,4 @@
-//! An open sound output: the part that runs in the writer's thread.
+//! The part of an open sound output that runs in the thread that writes the samples.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

@@ -2,8 +2,8 @@
 //! amplifier, and analog inputs record.
 //!
 //! The samples of an output are volts *at the display*, including the carrier. The adapter divides
-//! them by the amplifier's gain and streams them through NI-DAQmx. The NI-DAQmx library is not
-//! linked, but loaded at run time.
+//! these samples by the amplifier's gain and streams them through NI-DAQmx. The NI-DAQmx library is
+//! not linked, but loaded at run time.
 //!
 //! The voltage is limited in these ways:
 //! - A sample beyond `limit_v` is never output. The driver's own channel limits have the same

@@ -4,8 +4,9 @@
 //! The adapter refuses a sample over the limit, and samples whose mean exceeds the direct-voltage
 //! limit. In addition, the driver refuses samples beyond its own channel limits. If the writer
 //! hangs, the last voltage would stay at the output. Therefore, the watchdog detects when the
-//! buffer runs empty. The last step of every session is an unclocked write of zero, even after an
-//! error. If this write fails, it is repeated. Before the last repetition, the card is reset.
+//! buffer runs empty, and then sets the output to zero. The last step of every session is an
+//! unclocked write of zero, even after an error. If this write fails, it is repeated. Before the
+//! last repetition, the card is reset.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -2,10 +2,10 @@
 //! samples have been output.
 //!
 //! The device computes the number of waiting samples from the number of samples that were output.
-//! The driver counts samples as gone as soon as they are in the card's memory. Therefore, the
-//! device does not use the free space that the driver reports. The number of waiting samples does
-//! not include the ramp before a stream. With a live motion, the buffer holds 20 ms (`live_default`
-//! of `buffer_ms`).
+//! The driver counts samples as output as soon as they are in the card's memory, which is before
+//! the card outputs them. Therefore, the device does not use the free space that the driver
+//! reports. The number of waiting samples does not include the ramp before a stream. With a live
+//! motion, the buffer holds 20 ms (`live_default` of `buffer_ms`).
 
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;

@@ -52,8 +52,8 @@ impl Adapter for FileAdapter {
     }
 }
 
-/// Creates a WAV file of sound with 32-bit floats. The file has one channel for each factor. A
-/// channel contains the samples multiplied by the channel's factor.
+/// Creates a WAV file of sound with 32-bit floats. The file has one channel for each factor in
+/// `factors`. A channel contains the samples multiplied by the channel's factor.
 ///
 /// # Errors
 /// Returns an error if a WAV file cannot have this rate, or the file cannot be created.

@@ -26,14 +26,15 @@ use htex_dsp::envelope::Measurement;
 /// A motor or interface that plays blocks. Implement this trait to add a device that cannot play
 /// samples.
 pub trait Motor: Send {
-    /// Starts to play a block. The next call comes when the time of this block is over.
+    /// Starts to play a block. The device makes the next call when the duration of this block is
+    /// over.
     ///
     /// # Errors
     /// The reason, as a sentence. The motor is then stopped.
     fn play(&mut self, block: &Block<'_>) -> Result<(), String>;
 
-    /// Stops the motor after the last block. The time of this block is already over. Waits until
-    /// the motor is at rest.
+    /// Stops the motor after the last block. When the device makes this call, the duration of the
+    /// last block is already over. Waits until the motor is at rest.
     ///
     /// # Errors
     /// The reason, as a sentence.

@@ -1,4 +1,4 @@
-//! An open output for a motor: the part that runs in the writer's thread.
+//! The part of an open motor output that runs in the thread that writes the samples.
 
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};

@@ -82,7 +82,8 @@ impl Plan {
         (self.block_s * rate_hz).round().max(1.0) as usize
     }
 
-    /// Returns the capabilities of a device with a motor: it takes sound, at the pace of a clock.
+    /// Returns the capabilities of a device with a motor: the device takes samples of sound at the
+    /// pace of a clock.
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             quantity: Quantity::Sound,

@@ -1,4 +1,5 @@
-//! Controllers that take points or samples several times per second, through an OpenXR runtime.
+//! Controllers that take points (an amplitude and a frequency) or samples several times per second,
+//! through an OpenXR runtime.
 //!
 //! The adapter is not linked to an OpenXR library, but loads a runtime or the installed loader at
 //! run time. The setting `form` chooses what is played:

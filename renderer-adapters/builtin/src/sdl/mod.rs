@@ -5,10 +5,10 @@
 //! strength. The mean frequency of a block of `block_ms` determines how the level of the block is
 //! divided between the two motors ([`htex_dsp::reduced::two_motors`]).
 //!
-//! A strength is valid for `HOLD_BLOCKS` blocks. If the device's thread hangs in a program that
-//! polls SDL's events, SDL stops the motors after the time of these blocks. If the program ends,
-//! the operating system stops the motors. SDL stays initialised, because the application may also
-//! use SDL.
+//! SDL drives the motors with a strength for the duration of `HOLD_BLOCKS` blocks. If the device's
+//! thread hangs, SDL stops the motors after this time, as long as the program still polls SDL's
+//! events. If the program ends, the operating system stops the motors. SDL stays initialised after
+//! the device is closed, because the application may also use SDL.
 #![deny(unsafe_code)]
 
 mod driver;

@@ -1,5 +1,6 @@
-//! The decisions of the player (the app's process) about its guardian. The player decides how long
-//! to wait for the guardian, when to kill it, how to set the output to zero, and what to print.
+//! The decisions of the player (the app's process) about its guardian (the process that holds the
+//! device). The player decides how long to wait for the guardian, when to kill it, how to set the
+//! output to zero, and what to print.
 //!
 //! This module is a state machine without a clock, process or pipe. The program runs the state
 //! machine in `worker.rs`. The model checker (`cargo xtask prove zero`) runs the same code against
@@ -19,8 +20,8 @@ use std::time::Duration;
 pub const CONFIRM: Duration = Duration::from_millis(500);
 /// Time between two printed warnings.
 pub const EVERY: Duration = Duration::from_millis(1_000);
-/// Longest time for a single request. It does not include the wait for the buffer and the ramp. A
-/// write with a longer timeout is sent as several requests.
+/// Longest time for a single request. This time does not include the wait for the buffer and the
+/// ramp. A write with a longer timeout is sent as several requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
 /// Longest time for opening a device, because a driver may take seconds to load.
 pub const OPENING: Duration = Duration::from_millis(10_000);
@@ -74,7 +75,7 @@ pub enum By {
 /// An event that the player reacts to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// A caller sent a request. The player waits for the answer for at most this time.
+    /// A caller sent a request. The player waits at most this time for the answer.
     Asked(Duration),
     /// The guardian answered.
     Answered,
@@ -82,7 +83,7 @@ pub enum Event {
     PipeEnded,
     /// The guardian's process is gone.
     GuardianGone,
-    /// The caller drops the device. The player waits for the guardian to end for at most this time.
+    /// The caller drops the device. The player waits at most this time for the guardian to end.
     Closing(Duration),
     /// An attempt confirmed that the output is at zero.
     Zero,

@@ -7,8 +7,8 @@ use crate::{AdapterEntry, DeviceError, Output, Settings, StreamFormat};
 
 use crate::guardian::message::{Answer, FINISH, Opening, STATUS, WRITE, put, read_message};
 
-/// Holds a device for the app at the other end of two pipes. Returns when the pipe `from` ends. In
-/// a helper program, the pipes are its standard input and output.
+/// Holds a device open for the app at the other end of two pipes. Returns when the pipe `from`
+/// ends. In a helper program, the pipes are its standard input and output.
 ///
 /// Call this function in a program that ignores signals, so that only the end of the pipe `from`
 /// ends the program.

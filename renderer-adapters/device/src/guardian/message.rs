@@ -1,4 +1,5 @@
-//! The messages between an app and its guardian: one byte, a length, and a body.
+//! The messages between an app and its guardian: each message consists of one byte, a length, and a
+//! body.
 
 use std::io::{Read, Write};
 

@@ -3,7 +3,7 @@
 //!
 //! - C refers to objects by handles, which are numbers. A call returns an error if the object was
 //!   freed, if the number was never a handle, or if another thread is using the object. None of
-//!   these mistakes is undefined behaviour (`handles`).
+//!   these mistakes causes undefined behaviour (`handles`).
 //! - A call returns a [`htex_status`]. [`htex_last_error`] returns the text of the calling thread's
 //!   last error. No call unwinds.
 //! - A struct of options begins with its size in bytes. In every other field, zero selects the

@@ -23,7 +23,7 @@ pub struct htex_motion {
     /// follow the position use this value.
     pub position_mm: f64,
     /// Place on the surface: coordinate x, mm, positive or negative. If `x_mm` or `y_mm` is NAN,
-    /// the place is unknown. Only models that map a surface use the place.
+    /// the place is unknown. Only models that contain a map of the surface use the place.
     pub x_mm: f64,
     /// Coordinate y of the place, mm, at a right angle to `x_mm`.
     pub y_mm: f64,

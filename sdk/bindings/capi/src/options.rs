@@ -115,8 +115,8 @@ pub struct htex_voice_options {
     /// Highest level that the voice reaches at motions outside the recorded conditions, as a
     /// multiple of the strongest recorded level. Must be positive and finite; 0 selects 4.
     pub ceiling: f64,
-    /// If not 0, the voice makes the texture stronger and weaker over time, as in its recording, if
-    /// the asset states how much. The mean square of the samples stays the same.
+    /// If not 0, the strength of the texture fluctuates over time as in its recording, if the asset
+    /// contains this fluctuation. The fluctuation does not change the mean square of the samples.
     pub fluctuation: u32,
 }
 

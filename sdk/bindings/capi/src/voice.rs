@@ -1,4 +1,4 @@
-//! Voices: play an asset at a motion.
+//! Voices: a voice plays an asset, and follows the motion of the finger.
 
 use std::ffi::c_char;
 use std::ops::{Deref, DerefMut};
@@ -244,8 +244,9 @@ pub unsafe extern "C" fn htex_voice_envelope(
 
 /// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz. `len` must be
 /// the number of bands plus one. The edges go from the lowest to the highest frequency of the
-/// asset, spaced by equal ratios. The first band also includes all frequencies below it, down to 0
-/// Hz. The last band also includes all frequencies above it, up to half the sample rate.
+/// asset, and the ratio of neighbouring edges is constant. The first band also includes all
+/// frequencies below it, down to 0 Hz. The last band also includes all frequencies above it, up to
+/// half the sample rate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope_edges(
     voice: htex_voice,

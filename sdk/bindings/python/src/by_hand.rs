@@ -1,5 +1,5 @@
-//! Makes textures without recordings: from parameters, between two other textures, or with other
-//! metadata.
+//! Makes textures without recordings: from parameters, by interpolation between two textures, or by
+//! changing the metadata of a texture.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

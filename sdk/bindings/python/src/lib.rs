@@ -1,7 +1,7 @@
 //! The extension module of the Python package `htex`. The package's Python files contain the data
 //! classes, the exceptions and the command. The extension module opens, plays and fits textures,
-//! and runs sweeps. During this work the module releases the global interpreter lock, so that other
-//! Python threads can run.
+//! and measures trade-offs between the accuracy, size and computing time of models. During this
+//! work the module releases the global interpreter lock, so that other Python threads can run.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -5,8 +5,8 @@
 //! files. `spec/conformance-protocol.md` specifies the object.
 //!
 //! The reader may hang, print without end, or start programs of its own. Therefore each run has a
-//! limit of time and of output. It also has its own process group, which the runner kills at the
-//! end ([`run`]). Systems other than Unix have no process groups, so the runner kills only the
+//! limit of time and of output. Each run also has its own process group, which the runner kills at
+//! the end ([`run`]). Systems other than Unix have no process groups, so the runner kills only the
 //! reader itself.
 #![forbid(unsafe_code)]
 
@@ -74,11 +74,12 @@ impl Part {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Class {
-    /// Finds every mistake of a file, by code and pointer.
+    /// Finds every mistake in a file, and reports the code of the mistake and the JSON pointer to
+    /// it.
     Validator,
     /// Accepts valid files and refuses invalid ones.
     Reader,
-    /// Computes the numbers that are played.
+    /// Computes the numbers with which a texture is played, such as its level.
     Player,
 }
 

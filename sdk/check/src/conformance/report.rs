@@ -26,7 +26,7 @@ pub struct Report {
     pub runs: usize,
     pub matrix: Matrix,
     pub differences: Vec<Difference>,
-    /// Files that the runner left out because they need options, and the command has no
+    /// Files that the runner left out: they need options, but the reader's command line has no
     /// `{options}`.
     pub left_out: Vec<Left>,
 }

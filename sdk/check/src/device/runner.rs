@@ -31,9 +31,9 @@ impl Display for DeviceName {
     }
 }
 
-/// Runs all checks of a device, each check in its own process. `runner` is a program that calls
-/// [`run_one`]. The checker starts this program with the arguments in `runner`, which name the
-/// device and its settings. As the last argument, it appends the name of the check.
+/// Runs all checks of a device, each check in its own process. `runner` names a program that calls
+/// [`run_one`], and the program's first arguments. These arguments name the device and its
+/// settings. The checker appends the name of the check as the last argument.
 pub fn check(device: &str, subject: &Subject, runner: &Runner) -> Report {
     let direction = match subject {
         Subject::Builtin(adapter) => Some(adapter.descriptor().direction),

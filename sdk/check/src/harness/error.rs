@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// The error if checks cannot run, or if the benchmark cannot measure a model.
+/// An error that prevents the checks from running, or the benchmark from measuring a model.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckError {

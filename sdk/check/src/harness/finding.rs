@@ -27,7 +27,7 @@ impl Outcome {
     pub const ALL: [Self; 6] =
         [Self::Passed, Self::Warning, Self::Skipped, Self::Failed, Self::Crashed, Self::TimedOut];
 
-    /// Returns whether the checked model or device is at fault.
+    /// Returns whether this outcome means that the checked model or device is at fault.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Failed | Self::Crashed | Self::TimedOut)
     }

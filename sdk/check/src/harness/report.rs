@@ -14,14 +14,14 @@ pub struct CheckReport {
     pub finding: Finding,
 }
 
-/// The results of all checks of a model or a device. `Subject` identifies the model or device, and
-/// the settings.
+/// The results of all checks of a model or a device. The type `Subject` identifies the model or
+/// device, and the settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report<Subject> {
     /// The model or device. In JSON, the subject's fields are at the same level as `ok`.
     #[serde(flatten)]
     pub subject: Subject,
-    /// Whether no check failed, crashed or timed out.
+    /// True if no check failed, crashed or timed out.
     pub ok: bool,
     /// The result of each check, in the order of the table.
     pub checks: Vec<CheckReport>,

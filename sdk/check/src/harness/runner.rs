@@ -1,4 +1,4 @@
-//! Runs checks: one in this process, or each one in a separate process.
+//! Runs a single check in this process, or each check in a separate process.
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -13,7 +13,7 @@ use crate::harness::{CheckError, CheckReport, Finding};
 /// The steps of loading, in their order. Each step has a check with the same name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 
-/// The check to which a loading error belongs.
+/// The check that reports an error in loading a model or a device.
 #[derive(Debug, Clone, Copy)]
 pub struct Owner {
     check: &'static str,
@@ -22,8 +22,8 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// Names this check as the owner of the error, and states that the loading steps before this
-    /// check passed.
+    /// Names the check that reports the error, and states that the loading steps before this check
+    /// passed.
     pub fn reached(check: &'static str) -> Self {
         let reached = true;
         Self { check, reached }
@@ -77,7 +77,7 @@ pub(crate) fn run_all<'a, Case: 'a>(
 }
 
 /// Runs one check in this process. A crash ends the process. `load` loads the model or device.
-/// `owner` returns the check to which a loading error belongs.
+/// `owner` returns the check that reports a loading error.
 ///
 /// # Errors
 /// Returns an error if the table has no check of this name.

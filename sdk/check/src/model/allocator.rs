@@ -15,8 +15,8 @@
 //!
 //! Other methods have disadvantages. Comparing the heap before and after does not show memory that
 //! was allocated and freed in between. If the program defined its own `malloc`, all other commands
-//! of the program would use it. A preloaded library would be a second file to install. For a WASM
-//! module, only the growth of its memory is visible.
+//! of the program would use it. A preloaded library would be a second file to install. In a WASM
+//! module, the checker detects only that the module's memory grows.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;

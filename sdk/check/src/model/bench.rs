@@ -9,7 +9,7 @@ use crate::harness::{CheckError, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::start::{Start, start};
 
-/// Block sizes at which the benchmark measures times, samples.
+/// Block sizes, in samples, for which the benchmark measures times.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];
 /// Number of rounds over all models and block sizes. The first is a warm-up and is not counted.
 const ROUNDS: usize = 64;
@@ -19,8 +19,8 @@ const SAMPLES: usize = 8_192;
 /// A model to measure, and the way in which it was loaded.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The model's short name. The benchmark compares subjects of the same name with the first of
-    /// them.
+    /// The model's short name. If several subjects have the same name, the benchmark compares them
+    /// with the first of them.
     pub model: String,
     /// How the model was loaded.
     pub way: String,
@@ -30,7 +30,7 @@ pub struct Subject {
 /// Minimum, median and spread of the times over the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
-    /// The fastest round, ns. Other load on the machine disturbed this round least.
+    /// The fastest round, ns. This is the round that other load on the machine disturbed least.
     pub min_ns: f64,
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.
@@ -59,8 +59,8 @@ pub struct Cost {
     pub rate_hz: f64,
     /// Times in blocks of [`BLOCKS`].
     pub blocks: Vec<BlockCost>,
-    /// Overhead of a call, ns: the minimum time of a call for one sample, minus the minimum time of
-    /// a sample in a large block.
+    /// Overhead of a call, ns: the minimum time of a call that renders one sample, minus the
+    /// minimum time per sample in a large block.
     pub per_call_ns: f64,
     /// Time to the first sample, measured only for WASM modules.
     pub start: Option<Start>,
@@ -75,7 +75,7 @@ struct Runner {
 }
 
 /// Measures models in one interleaved run, so that other load on the machine affects all models
-/// equally. Each model plays parameters fitted to a reference spectrum.
+/// equally. Each model renders with parameters that were fitted to a reference spectrum.
 ///
 /// # Errors
 /// Returns [`CheckError::Model`] when a model cannot be fitted or fails to render.

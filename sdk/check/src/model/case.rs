@@ -40,7 +40,8 @@ pub struct Settings<'a> {
     pub seed: u64,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<&'a Path>,
-    /// Duration of the check `fuzz`. If `None`, the check plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, the check runs a fixed number of random sequences
+    /// of calls.
     pub fuzz: Option<Duration>,
 }
 

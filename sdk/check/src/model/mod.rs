@@ -11,8 +11,9 @@
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
 //!
-//! A model is checked from outside, by the same calls that a host makes. The faulty models in
-//! `tests/bad-plugins` test that the checker reports exactly the guarantee that is violated.
+//! A model is checked from outside, by the same calls that a host makes. The tests run the checker
+//! on the faulty models in `tests/bad-plugins`. The checker must report exactly the guarantee that
+//! each model violates.
 #![deny(unsafe_code)] // Allowed in `allocator` and `pages` only.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]

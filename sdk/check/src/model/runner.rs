@@ -23,7 +23,8 @@ pub struct Options {
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,
-    /// Duration of the check `fuzz`. If `None`, the check plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, the check runs a fixed number of random sequences
+    /// of calls.
     pub fuzz: Option<Duration>,
 }
 

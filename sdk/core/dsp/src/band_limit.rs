@@ -1,8 +1,9 @@
-//! Steep filters that restrict noise with a wider spectrum to the band.
+//! Steep filters that limit noise to the band, if the spectrum of the noise is wider than the band.
 //!
-//! A filter changes the RMS by up to 2 %, because of its ripple, and because half of the bin at the
-//! Nyquist frequency is missing. So a model that uses these filters computes the level of its
-//! filtered noise, as a sum over a table of frequencies ([`PassedPower`]).
+//! A filter changes the RMS by up to 2 %, because the filter has ripple, and because half of the
+//! bin at the Nyquist frequency lies above this frequency. Therefore a model that uses these
+//! filters computes the level of the filtered noise, as a sum over a table of frequencies
+//! ([`PassedPower`]).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -28,10 +29,10 @@ const EDGE_POINTS: usize = 4;
 const BESIDE: f64 = 0.5;
 
 /// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. The filters are
-/// Chebyshev filters. Inside the band, the magnitude is constant within 0.2 dB at all frequencies
-/// that are at least an eighth of the edge's frequency away from each edge. Half a grid bin outside
-/// each edge, the magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no filter.
-/// The output is delayed by some samples ([`Pipeline`]).
+/// Chebyshev filters. Inside the band, the magnitude is constant within 0.2 dB, except at
+/// frequencies that are closer to an edge than an eighth of the edge's frequency. Half a grid bin
+/// outside each edge, the magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no
+/// filter. The output is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -58,10 +59,10 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// A table that states, for each frequency, the part of a noise's power that passes [`band_limit`]
-/// and that the bins of the band measure. The table covers each grid bin in the band and some bins
-/// outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only its
-/// part below that frequency counts.
+/// A table that states which part of the power of noise, at each frequency, passes [`band_limit`]
+/// and is measured in the bins of the band. The table covers each grid bin in the band and some
+/// bins outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only
+/// its part below that frequency counts.
 ///
 /// The table corrects the level of filtered noise. Without this correction, the noise would be too
 /// weak for three reasons. The filters have ripple, a part of the highest bin lies above the
@@ -123,8 +124,9 @@ impl PassedPower {
         Self { turns: points.chunks(TURNS).map(|p| Turns::new(p, rate_hz)).collect(), points }
     }
 
-    /// Returns the RMS of filtered noise whose magnitude before the filters is `curve`. Corresponds
-    /// to [`curve_level_rms`](crate::grid::curve_level_rms), which measures unfiltered noise.
+    /// Returns the RMS of noise after the filters, if the noise has the magnitude `curve` before
+    /// the filters. Corresponds to [`curve_level_rms`](crate::grid::curve_level_rms), which
+    /// measures unfiltered noise.
     pub fn level_rms(&self, curve: impl Fn(f64) -> f64) -> f64 {
         let power: f64 = self
             .points

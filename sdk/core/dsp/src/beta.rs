@@ -79,9 +79,10 @@ impl BetaDensity {
         libm::exp(left + right - self.log_scale)
     }
 
-    /// Writes the density at points for which the caller passes `ln u` and `ln (1 - u)`, both
-    /// finite, with the accuracy of [`exponentials`](crate::exponential::exponentials). The
-    /// shortest slice determines the number of points.
+    /// Writes the density at several points; for each point, the caller passes `ln u` and `ln (1 -
+    /// u)`, which must be finite. The result is as accurate as the results of
+    /// [`exponentials`](crate::exponential::exponentials). The shortest slice determines the number
+    /// of points.
     pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
         let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
         for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {

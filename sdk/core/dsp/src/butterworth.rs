@@ -1,6 +1,6 @@
 //! Butterworth low-pass and high-pass filters of order 1 to 20: analogue magnitudes, and digital
-//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass, but does not
-//! say which family of filters.
+//! second-order sections. The paper (Spectral slope) uses a high-pass filter and a low-pass filter,
+//! but does not name their family.
 //!
 //! The digital design is the bilinear transform with a prewarped cut-off, as in
 //! `scipy.signal.butter(..., output="sos")`. At the cut-off the magnitude is exactly 1/√2.

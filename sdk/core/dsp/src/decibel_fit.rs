@@ -2,12 +2,12 @@
 //!
 //! The levels are the energies in 30 triangular bands, which cover the frequency band on the axis
 //! [`edge_to_edge`]. The model Bands uses the same bands by default. Fits to third octaves would
-//! have a smaller third-octave error. But the project compares all models by this error, so no
-//! model is fitted to third octaves. Only the shape counts, because the energies of the spectrum
-//! and of the model are each divided by their sum.
+//! have a smaller third-octave error. But the project compares all models by this error. To keep
+//! this comparison fair, no model is fitted to third octaves. Only the shape counts, because the
+//! energies of the spectrum and of the model are each divided by their sum.
 //!
-//! The search is the Levenberg–Marquardt method. It computes derivatives by differences, so a model
-//! has to provide only its power.
+//! The search is the Levenberg–Marquardt method. The derivatives are computed as finite
+//! differences, so a model has to provide only its power.
 
 use alloc::vec::Vec;
 
@@ -32,7 +32,7 @@ const STRIDE: f64 = 1.0;
 /// Change of a parameter, relative to the parameter or absolute below 1, for its derivative.
 const DIFFERENCE: f64 = 1e-6;
 
-/// The band levels of a spectrum, to which models are fitted.
+/// The band levels to which a model is fitted, measured from a spectrum.
 ///
 /// ```
 /// use htex_dsp::{Band, decibel_fit::DecibelFit};
@@ -64,7 +64,8 @@ struct Trial {
 }
 
 impl DecibelFit {
-    /// Measures the levels of a power spectrum at `frequency_hz` (ascending, in the band).
+    /// Measures the band levels of a power spectrum that is given at the frequencies `frequency_hz`
+    /// (ascending, in the band).
     pub fn new(band: Band, frequency_hz: &[f64], power: &[f64]) -> Self {
         let edges: Vec<f64> = (0..BANDS + 2).map(|i| i as f64 - 1.0).collect();
         let place = |&f: &f64| edge_to_edge(f, band) * (BANDS - 1) as f64;

@@ -1,9 +1,9 @@
 //! Real FFTs of any length in double precision, bit-identical on every machine.
 //!
-//! Other FFT libraries choose their instructions by the processor, so their rounding differs
-//! between processors. Those libraries also take sines from the system's C library. The FFTs of
-//! this module are plain arithmetic, with tables from `libm`. These FFTs use Stockham's algorithm
-//! (radices 2 to 5 and 7), and Bluestein's for lengths with other prime factors.
+//! Other FFT libraries use different instructions on different processors, so their rounding
+//! differs between processors. Those libraries also take sines from the system's C library. The
+//! FFTs of this module are plain arithmetic, with tables from `libm`. These FFTs use Stockham's
+//! algorithm (radices 2 to 5 and 7), and Bluestein's for lengths with other prime factors.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;

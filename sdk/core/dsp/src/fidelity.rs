@@ -23,9 +23,9 @@ const ON_EDGE: f64 = 1e-12;
 const RELATIVE_FLOOR: f64 = 1e-9;
 
 /// Third-octave error: RMS over the bands of `10 log10(model energy / reference energy)`, decibels.
-/// The energy is the sum of squared magnitudes. Differences in level count, because the spectra are
-/// not matched by a gain. A band counts only if it contains a bin and the reference has energy in
-/// it. Returns `None` if there is no such band.
+/// The energy is the sum of squared magnitudes. Differences in level also contribute to the error,
+/// because the function does not adjust the gain of the model first. A band counts only if it
+/// contains a bin and the reference has energy in it. Returns `None` if there is no such band.
 ///
 /// ```
 /// use htex_dsp::fidelity::third_octave_error_rms_db;

@@ -1,8 +1,8 @@
 //! How a signal fluctuates in time, which its spectrum does not show.
 //!
-//! Stationary noise with the spectrum of a recording plays the recording's average power in every
-//! band. A recording also becomes stronger and weaker, several times a second and in many bands
-//! together. [`Fluctuation`] describes this in three ways:
+//! Stationary noise with the spectrum of a recording has the recording's average power in every
+//! band, at all times. But the recording itself becomes stronger and weaker, several times a second
+//! and in many bands together. [`Fluctuation`] describes this in three ways:
 //!
 //! - the modulation spectrum: how strongly the power in each third octave rises and falls at 1 to
 //!   64 Hz;
@@ -148,7 +148,7 @@ pub struct EnvelopeExcess {
     pub excess: [f64; 2],
     /// The square of the standard error of `excess` for stationary Gaussian noise.
     pub error: [f64; 2],
-    /// Power of the signal in the band, in the square of its unit.
+    /// Power of the signal in the band, in the squared unit of the signal.
     pub power: f64,
 }
 

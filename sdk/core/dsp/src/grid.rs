@@ -1,15 +1,16 @@
 //! The band of a texture, and the grid of frequencies on which its spectrum is given.
 //!
 //! A spectrum has unit RMS if the RMS computed from the bins in the band is 1. Bins outside the
-//! band do not count, although the window spreads a component at 20 Hz partly into them. Suppose
-//! that a texture is rendered, and the samples are fitted again to make a copy. If the bins outside
-//! the band counted, each copy of a texture with much energy at 20 Hz would lose up to 0.1 dB of
-//! its level. With this definition, the level stays within 0.1 dB over three successive copies (300
-//! s of samples).
+//! band do not count, although the window spreads part of a component at 20 Hz into these bins.
+//! Suppose that a texture is rendered, and the samples are fitted again to make a copy. If the bins
+//! outside the band counted, each copy of a texture with much energy at 20 Hz would lose up to 0.1
+//! dB of its level. With this definition, the level stays within 0.1 dB over three successive
+//! copies (300 s of samples).
 
 use alloc::vec::Vec;
 
-/// Spacing of the texture spectrum's grid: 4000 samples at 20 kHz (paper, Texture processing).
+/// Spacing of the texture spectrum's grid, hertz: the frequency resolution of 4000 samples at 20
+/// kHz (paper, Texture processing).
 pub const GRID_HZ: f64 = 5.0;
 
 /// The band that a texture spectrum covers, hertz, including both edges.

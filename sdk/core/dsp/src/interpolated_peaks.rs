@@ -3,11 +3,11 @@
 //! periodic Hann window, this sinusoid would have exactly the magnitudes of these two bins.
 //!
 //! If the sinusoid is `d` bins from the maximum, the larger neighbour is `(1 + d) / (2 - d)` times
-//! as high as the maximum. Magnitudes averaged over segments keep this ratio. The table compares
-//! this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2 C + R)`, and
-//! with a parabola through three logarithms. Each cell has four errors: the RMS error and the
-//! largest error of the frequency, then the RMS error and the largest error of the amplitude. Each
-//! spectrum is the mean power of 10 segments, and the sinusoids lie between 60 Hz and 900 Hz:
+//! as high as the maximum. Magnitudes averaged over segments keep this ratio. The table below
+//! compares this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2 C +
+//! R)`, and with a parabola through three logarithms. Each cell has four errors: the RMS error and
+//! the largest error of the frequency, then the RMS error and the largest error of the amplitude.
+//! Each spectrum is the mean power of 10 segments, and the sinusoids lie between 60 Hz and 900 Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|

@@ -1,11 +1,12 @@
 //! Inverse FFT from a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! Other FFT libraries choose their instructions by the processor, so their rounding differs
-//! between processors. These libraries are also slow in WASM. This FFT (Stockham, radices 2 to 5)
-//! is plain arithmetic on arrays, which compilers vectorise in native libraries and in WASM
+//! Other FFT libraries use different instructions on different processors, so their rounding
+//! differs between processors. These libraries are also slow in WASM. This FFT (Stockham, radices 2
+//! to 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and in WASM
 //! modules.
 //!
-//! The lengths of frames have no prime factor above 5, so these radices suffice.
+//! The noise frames for which this FFT is used have lengths without prime factors above 5, so these
+//! radices suffice.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;

@@ -126,9 +126,9 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 
 /// Does the same as [`zeros_of_lines`], but takes the cosines of at most [`MOST_LINES`] lines.
 ///
-/// The symmetric and the antisymmetric polynomial each consist of a fixed factor and the quadratics
-/// of every second line. The coefficients of the product of these quadratics are a palindrome, so
-/// only half of them are computed. Both polynomials are computed together.
+/// The symmetric and the antisymmetric polynomial each consist of a fixed factor and the quadratic
+/// factors of every second line. The coefficients of the product of these quadratic factors are a
+/// palindrome, so only half of them are computed. Both polynomials are computed together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
     // Clearing the memory for few lines takes less time than for many.
     match cosines.len() {

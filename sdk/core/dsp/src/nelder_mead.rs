@@ -15,7 +15,7 @@ pub struct Options {
     pub f_tolerance: f64,
     /// Maximum number of function calls.
     pub max_evaluations: usize,
-    /// Initial step along each axis, as a fraction of the start's coordinate.
+    /// Initial step along each axis, as a fraction of the start point's coordinate.
     pub initial_step: f64,
     /// Initial step along an axis whose start coordinate is zero.
     pub initial_step_at_zero: f64,

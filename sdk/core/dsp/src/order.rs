@@ -1,5 +1,5 @@
-//! Sorts values of all types with a single instance of the standard library's sort. Every further
-//! instance, for another type or comparison, would add some 6 kB to a program.
+//! Sorts values of all types with a single compiled copy of the standard library's generic sort. A
+//! further copy, for another type or comparison, would add some 6 kB to a program.
 
 use core::cmp::Ordering;
 

@@ -30,8 +30,9 @@ pub struct Pipeline {
     last: Option<Row<f64, FEW>>,
 }
 
-/// Four pipelines with the same number of rows of sections, computed side by side. Each output is
-/// bit-identical to the output of the same pipeline run alone.
+/// Four pipelines with equally many rows of sections (a row is a group of two or four sections),
+/// computed side by side. Each output is bit-identical to the output of the same pipeline run
+/// alone.
 #[derive(Debug)]
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 

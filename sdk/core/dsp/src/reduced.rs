@@ -2,9 +2,9 @@
 //! level becomes a strength from 0 to 1. A mean frequency becomes its place in a range of
 //! frequencies, from 0 to 1. A point combines a time, a strength and a place.
 //!
-//! Such an interface interpolates linearly between points. Each block of samples gives one point,
-//! at the end of the block, with the block's level. So the interface reaches the level of a block
-//! when the block ends. On average, its output is half a block later than the output of an
+//! A parametric interface interpolates linearly between points. Each block of samples gives one
+//! point, at the end of the block, with the block's level. So the interface reaches the level of a
+//! block when the block ends. On average, its output is half a block later than the output of an
 //! interface that holds each level during its block.
 
 use crate::envelope::Measurement;
@@ -67,7 +67,7 @@ pub struct Point {
     pub time_ns: i64,
     /// Strength, 0 to 1.
     pub strength: f32,
-    /// Mean frequency as a place in the range of the scale, 0 to 1.
+    /// Mean frequency as a place in the scale's range of frequencies, 0 to 1.
     pub place: f32,
 }
 

@@ -5,9 +5,9 @@
 //! while it runs, and gives the same samples for any block size. The project has its own converter
 //! because the resamplers of other libraries work in chunks of a fixed size.
 //!
-//! Textures have no content above 1 kHz, so voices generate noise at 2 to 4 kHz. A voice then
-//! generates five to eight times fewer samples than at the rate of the device. In addition, the
-//! converter's filter serves as the steep filter that removes noise above the band.
+//! Textures have no content above 1 kHz, so voices generate noise at sample rates of 2 to 4 kHz. A
+//! voice then generates five to eight times fewer samples than at the rate of the device. In
+//! addition, the converter's filter serves as the steep filter that removes noise above the band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -105,9 +105,9 @@ enum Pending {
 }
 
 /// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
-/// `wanted_hz`. The result is `wanted_hz` divided by an integer. It is the lowest such rate whose
-/// half lies far enough above the band for a wide transition band in the interpolation to
-/// `wanted_hz`.
+/// `wanted_hz`. The result is `wanted_hz` divided by an integer. This is the lowest such rate at
+/// which half the rate lies far enough above the band. The interpolation to `wanted_hz` then has
+/// room for a wide transition band.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     // The first image then begins at 2.7 times the upper edge, so a single short filter separates
     // it (see `specs` in `resample.rs`).
@@ -258,8 +258,8 @@ impl ShapedNoise {
         &self.frames.component_hz
     }
 
-    /// Returns a key for tables over the components. Streams with equal keys have the same
-    /// [`Self::component_hz`].
+    /// Returns a key for looking up tables that have one value for each component. Streams with
+    /// equal keys have the same [`Self::component_hz`].
     pub fn components_key(&self) -> ComponentsKey {
         self.frames.key
     }

@@ -4,8 +4,8 @@
 /// Number of sharpening steps.
 const SHARPENINGS: usize = 2;
 
-/// Writes the sharpened power spectrum on the band's grid. If noise has this spectrum, its spectrum
-/// measured through the Hann window is approximately `power`.
+/// Writes the sharpened power spectrum on the band's grid. If noise has the sharpened spectrum, a
+/// measurement through the Hann window gives approximately `power`.
 ///
 /// The window distributes the power of noise over bins: two thirds stay in a bin, and a sixth goes
 /// to each neighbour. Two Richardson–Lucy steps approximately undo this distribution. Next to

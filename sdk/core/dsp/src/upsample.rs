@@ -1,8 +1,8 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
-//! Each step converts a few source samples to all output samples that belong to them. The outputs
-//! of one phase are side by side in a vector register. So no sum runs across the lanes of a
-//! register, and the output does not depend on the block sizes.
+//! Each step takes a few source samples, and computes the output samples for all phases of the
+//! filter. A vector register contains outputs of the same phase for successive source samples. So
+//! no sum runs across the lanes of a register, and the output does not depend on the block sizes.
 //!
 //! The converter pulls source samples in multiples of eight. Therefore the source sample at which a
 //! voice retunes does not depend on the conversion stages that follow the voice.

@@ -83,8 +83,8 @@ impl Skin {
 pub struct Listener {
     /// Impedance of the fingertip.
     pub skin: Skin,
-    /// Threshold relative to [`detection_threshold_m`], decibels; negative for a listener who feels
-    /// weaker vibrations.
+    /// Threshold relative to [`detection_threshold_m`], decibels; negative for a more sensitive
+    /// listener.
     pub threshold_shift_db: f64,
 }
 

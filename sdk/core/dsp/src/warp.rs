@@ -28,7 +28,7 @@ const CHUNK: usize = 64;
 /// 0.4 of the source's rate, and -98 dB at 0.05.
 const FEW_PHASE_BITS: u32 = 5;
 
-/// Reads its source at a variable ratio, by windowed-sinc interpolation. Like
+/// Reads a stream of samples at a variable ratio, by windowed-sinc interpolation. Like
 /// [`crate::resample::Resampler`], the reader pulls samples from the source and gives the same
 /// samples for any block size.
 ///

@@ -1,8 +1,8 @@
 //! Selects AVX2 and AVX-512 code on x86-64 at run time.
 //!
-//! Inner loops are compiled for registers of 128 and 256 bits, and the loops of noise also for 512
-//! bits. The operations and their order are the same in all versions, so the results are
-//! bit-identical. The calls to these versions are the only unsafe code of this crate.
+//! Inner loops are compiled for registers of 128 and 256 bits, and the loops that generate noise
+//! also for 512 bits. The operations and their order are the same in all versions, so the results
+//! are bit-identical. The calls to these versions are the only unsafe code of this crate.
 
 /// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {

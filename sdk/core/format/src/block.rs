@@ -109,8 +109,9 @@ pub(crate) fn decode(
     }
 }
 
-/// Returns how many bytes a flat array takes in a parameter block with only this condition. In a
-/// block with several conditions, coded fields take fewer bytes for each later condition.
+/// Returns the number of bytes that a flat array takes in a parameter block with only one
+/// condition. In a block with several conditions, coded fields take fewer bytes for each later
+/// condition.
 ///
 /// # Errors
 /// Returns the errors of [`round_parameters`].

@@ -1,10 +1,12 @@
-//! Coded fields. The encoder predicts each step from the previous condition and from the previous
-//! numbers, and stores the errors of the predictions in a range code with adaptive probabilities.
+//! Coded fields. The encoder predicts each number, which is stored as an 8-bit step, from the
+//! previous condition and from the previous numbers. The encoder stores the errors of the
+//! predictions in a range code with adaptive probabilities.
 //!
 //! In a grid of 405 conditions of the model Bands, a condition takes 9.7 bytes if it is coded, and
 //! 20.1 bytes if it is packed. The measurements are in `docs/accuracy-and-time.md`.
 //!
-//! [`FieldCoder`] defines the sequence of decisions, so the same code writes and reads a field.
+//! [`FieldCoder`] defines which binary decisions are coded and in which order, so the same code
+//! writes and reads a field.
 
 use crate::range_coder::{Chance, Coder, Decoder, Encoder};
 

@@ -1,17 +1,17 @@
 //! Coded assets: the same texture in fewer bytes.
 //!
-//! A coded asset requires the extension [`CODED`]. It differs from a plain asset in three ways. Its
-//! fields of 8-bit steps are coded, and each condition is predicted from the previous one
-//! (`coded.rs`). Its arrays of conditions are tables (`table.rs`). Its measures of agreement are
-//! rounded to two decimals. Parameters and levels do not change, so the samples do not change
-//! either.
+//! A coded asset requires the extension [`CODED`]. It differs from a plain asset in three ways.
+//! First, fields with values in 8-bit steps are coded: each condition is predicted from the
+//! previous condition (`coded.rs`). Second, the manifest's arrays of conditions are stored as
+//! tables (`table.rs`). Third, the measures of agreement with the recorded spectra are rounded to
+//! two decimals. Parameters and levels do not change, so the samples do not change either.
 
 use crate::manifest::{StoredAs, StoredField};
 use crate::{Asset, CODED, Manifest, Steps};
 
 impl Manifest {
-    /// Returns whether the asset is coded, so that only readers of the extension [`CODED`] can use
-    /// it.
+    /// Returns whether the asset is coded, so that only readers that support the extension
+    /// [`CODED`] can use it.
     pub fn is_coded(&self) -> bool {
         self.extensions_required.iter().any(|name| name == CODED)
     }

@@ -1,4 +1,4 @@
-//! Parser of versioned JSON documents that reports every problem with a JSON pointer.
+//! Parses versioned JSON documents, and reports each problem with a JSON pointer to its place.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -27,9 +27,9 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that every kind of document must obey. A violation of the same rule has a different
-/// error code in each kind of document, so each kind supplies its own rules. Each field says what
-/// violates the rule.
+/// The rules that apply to every kind of document. Each kind of document has its own error codes
+/// for violations of these rules, so each kind supplies its own set of rules. The comment on each
+/// field describes the problem that the rule reports.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.

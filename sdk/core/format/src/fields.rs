@@ -104,8 +104,9 @@ enum Part {
 /// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// Returns an error if any fields do not match. The list contains all mismatches; the mismatches of
-/// stored fields come first, in the order of the fields.
+/// The returned list contains all mismatches; the mismatches of stored fields come first, in the
+/// order of the fields. The list contains all mismatches; the mismatches of stored fields come
+/// first, in the order of the fields.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,

@@ -32,7 +32,8 @@ impl Fluctuation {
     /// Size of a step, decibels.
     pub const STEP_DB: f64 = 1.0 / 32.0;
 
-    /// Rounds two standard deviations in decibels to steps, at most 255. `None` if both become 0.
+    /// Rounds two standard deviations in decibels to numbers of steps, each at most 255. `None` if
+    /// both become 0.
     pub fn from_db(strength_db: [f64; 2]) -> Option<Self> {
         // The conversion limits what is out of range, and turns NaN into 0.
         let [slow, fast] = strength_db.map(|db| (db / Self::STEP_DB).round() as u8);

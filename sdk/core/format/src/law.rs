@@ -1,11 +1,11 @@
 //! The motion law of a texture: how its frequencies and level change at a speed or force that was
 //! not recorded.
 //!
-//! To play a motion (v, F) from the nearest recorded motion (v0, F0), a player multiplies
-//! frequencies by `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. [`Law::assumed`] provides
-//! the exponents that were neither measured nor given by the user. The assumption depends on what
-//! slid over the surface ([`Contact`]) and on what the samples measure ([`Quantity`]), e.g. a
-//! force.
+//! To play at the speed v and the force F, a player starts from the nearest recorded motion (v0,
+//! F0). It multiplies frequencies by `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`.
+//! [`Law::assumed`] provides the exponents that were neither measured nor given by the user. The
+//! assumed exponents depend on what slid over the surface ([`Contact`]) and on what the samples
+//! measure ([`Quantity`]), e.g. a force.
 
 use std::fmt;
 use std::str::FromStr;
@@ -56,7 +56,7 @@ impl Contact {
         }
     }
 
-    /// Returns whether the contact is not known.
+    /// Returns whether the contact is unknown.
     pub fn is_unknown(&self) -> bool {
         *self == Self::Unknown
     }
@@ -240,8 +240,9 @@ impl Law {
         }
     }
 
-    /// Returns the law that a new asset states if nothing was measured. It is [`Self::assumed`]
-    /// except for the exponent of the force, which is 0 for a tool and 0.25 for an unknown contact.
+    /// Returns the law that a new asset states if nothing was measured. This is the law of
+    /// [`Self::assumed`] with another exponent of the force for two kinds of contact: 0 for a tool,
+    /// and 0.25 for an unknown contact.
     ///
     /// On 20 materials of the Penn Haptic Texture Toolkit, the force exponent of the level is 0.03
     /// for a tool (median; quartiles 0.01 and 0.05). Three fingers gave -0.07, 1.18 and 2.58. For
@@ -253,9 +254,10 @@ impl Law {
         Self::assumed(quantity, contact).reassumed(quantity, contact)
     }
 
-    /// Returns this law for a new asset, or for another quantity or contact. The function replaces
-    /// an assumed exponent with the exponent of [`Self::for_new_assets`], and averages a measured
-    /// exponent with that exponent. It does not change an exponent that the user gave.
+    /// Returns this law, adapted to a new asset or to another quantity or contact. The function
+    /// replaces an assumed exponent with the exponent of [`Self::for_new_assets`], and replaces a
+    /// measured exponent with a weighted mean of the measurement and that exponent. It does not
+    /// change an exponent that the user gave.
     ///
     /// The assumed exponents of the level depend on the law's frequency exponent, for every kind of
     /// contact. But if the frequency exponent was measured, the function uses a measured speed

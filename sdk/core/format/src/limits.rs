@@ -22,8 +22,9 @@ pub struct Limits {
     /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses a
     /// depth of more than 100.
     pub json_depth: usize,
-    /// Size of the manifest as JSON: 1,000,000 opening brackets and commas outside strings. A
-    /// manifest has at most one value more than it has opening brackets and commas.
+    /// Size of the manifest as JSON, counted in opening brackets and commas outside strings:
+    /// 1,000,000. This count limits the number of values, because a manifest has at most one value
+    /// more than it has opening brackets and commas.
     pub json_nodes: usize,
     /// Number of conditions: 10,000. A player finds triangles between the conditions, and the time
     /// for this grows faster than the number of conditions.

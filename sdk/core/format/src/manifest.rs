@@ -27,7 +27,8 @@ pub const VERSION: &str = "1.1";
 /// All versions that this crate writes, from the lowest on.
 const VERSIONS: [&str; 2] = ["1.0", VERSION];
 
-/// The extension that a coded asset requires: coded fields, and tables of conditions.
+/// The extension that a coded asset requires. The extension adds coded fields, and tables of
+/// conditions.
 pub const CODED: &str = "org.htex.coded/1";
 
 /// The extension of assets that are imported from the Penn Haptic Texture Toolkit.
@@ -211,7 +212,7 @@ pub struct Provenance {
     /// Options of the fit that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
-    /// Warnings that were shown to the author.
+    /// Warnings that the author was shown when the asset was made.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -242,7 +243,7 @@ pub enum How {
     Mixed,
 }
 
-/// One of the assets from which an asset was mixed.
+/// An asset that was mixed with other assets to make this asset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ingredient {
     /// Name of the asset's texture.
@@ -263,7 +264,7 @@ pub struct Source {
     /// Sample rate, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
-    /// Number of segments that were averaged.
+    /// Number of segments of the recording that were averaged.
     pub segments: u64,
     /// BLAKE3 of the recording's file, 64 hexadecimal digits. The hash distinguishes recordings
     /// with the same file name.
@@ -272,8 +273,8 @@ pub struct Source {
     pub blake3: Option<String>,
 }
 
-/// A condition: the speed and normal force of a recording. A speed or force that is absent is
-/// unknown.
+/// A condition: the speed and normal force of a recording. If the speed or the force is absent, it
+/// is unknown.
 ///
 /// ```
 /// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
@@ -306,8 +307,8 @@ pub struct Condition {
     pub segments: Option<u64>,
 }
 
-/// Largest relative difference at which two speeds, or two forces, count as the same. A person who
-/// tries to keep a speed or a force constant deviates by about as much.
+/// Largest relative difference at which two speeds, or two forces, count as the same. People who
+/// try to keep a speed or a force constant deviate from it by about this much.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
@@ -394,8 +395,8 @@ pub enum StoredAs {
     /// List of unsigned 8-bit integers `q`, stored as the differences between neighbours. Small
     /// differences take fewer bits.
     Packed(Steps),
-    /// Unsigned 8-bit integers `q`, predicted from the previous condition and stored in a range
-    /// code. Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
+    /// Unsigned 8-bit integers `q`, predicted from the previous condition and compressed by a range
+    /// coder. Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
     Coded(Steps),
 }
 
@@ -482,8 +483,8 @@ pub struct AtCondition {
     /// How well the model agrees with the recorded spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Left-out error. Recorded blocks near this condition are left out of a fit; the error
-    /// compares the fitted model with these blocks.
+    /// Left-out error. A fit leaves out recorded blocks near this condition; the error compares the
+    /// fitted model with these blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }

@@ -34,7 +34,7 @@ impl MeasureKind {
     }
 }
 
-/// What a measure is computed from.
+/// The data from which a measure is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// The model's magnitudes, as one would measure them in the output of the model's voice.
@@ -48,11 +48,11 @@ pub enum By {
 pub struct MeasureRow {
     /// Key in JSON.
     pub key: &'static str,
-    /// Key in JSON if the measure is computed from rendered samples: `samples_` and the key.
+    /// JSON key of the measure's value from rendered samples: `samples_` followed by the key.
     pub samples_key: &'static str,
     /// Definition, in one sentence.
     pub meaning: &'static str,
-    /// Definition for rendered samples; `None` if the measure is not computed from them.
+    /// Definition for rendered samples; `None` if the measure is computed only from magnitudes.
     pub of_samples: Option<&'static str>,
     /// The case in which a comparison has no value for this measure, such as "for a silent
     /// reference". Generated documentation writes "`None` " before these words. `None` if every

@@ -1,4 +1,5 @@
-//! Packed lists of steps: the first step, then the differences in a Rice code.
+//! Packed lists of 8-bit integers (steps): the first step, then the differences between neighbours
+//! in a Rice code.
 //!
 //! A step takes two to five bits if it differs little from the previous step. Each list has exactly
 //! one valid code, so that reading and writing a block again gives the same bytes. To make the code

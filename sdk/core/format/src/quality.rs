@@ -1,5 +1,5 @@
-//! How well a representation agrees with the recorded spectrum: `quality` and `left_out`. The
-//! module [`crate::quality_json`] reads and writes both as JSON.
+//! How accurately a representation reproduces the recorded spectrum: the manifest's keys `quality`
+//! and `left_out`. The module [`crate::quality_json`] reads and writes both as JSON.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::measure::{By, Measure};
 
-/// The values of the measures of agreement. A measure that was not computed has no value.
+/// The value of each measure of how well a model agrees with a recorded spectrum. A measure that
+/// was not computed has no value.
 ///
 /// ```
 /// use htex_format::{Measure, Measures};
@@ -61,7 +62,7 @@ impl<const N: usize> From<[(Measure, f64); N]> for Measures {
     }
 }
 
-/// Pairs of a key and a value, in their order. In JSON they are one object.
+/// Pairs of a key and a value, in a fixed order. In JSON they are one object.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct KeyedMeasures(pub Vec<(&'static str, Option<f64>)>);
 

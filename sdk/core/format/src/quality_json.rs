@@ -1,5 +1,6 @@
-//! JSON of `quality` and `left_out`. The table of measures defines the keys of both JSON objects.
-//! This module reads, writes and checks these objects, and describes them in the JSON Schema.
+//! JSON of `quality` and `left_out`. The keys of these two JSON objects come from the table of
+//! measures. This module reads, writes and checks these objects, and describes them in the JSON
+//! Schema.
 
 use std::borrow::Cow;
 use std::fmt;

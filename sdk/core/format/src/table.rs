@@ -1,8 +1,8 @@
 //! Tables: arrays of objects that are written column by column.
 //!
-//! A grid of 405 conditions has 13 numbers for each condition, and in an array of objects each
-//! number has its own key. After compression with Deflate, these keys take more bytes than the
-//! whole table.
+//! For example, a grid of 405 conditions stores 13 numbers for each condition. An array of objects
+//! repeats the key of every number. After compression with Deflate, these keys take more bytes than
+//! the whole table.
 
 #[cfg(feature = "write")]
 use std::collections::BTreeSet;

@@ -1,15 +1,16 @@
 //! Deserializer from JSON values to Rust types that is stricter than serde's. It refuses an array
-//! in place of an object, an object in place of a variant that is a string, and `null` in place of
-//! a typed value.
+//! in place of an object, an object in place of a string that names an enum variant, and `null` in
+//! place of a typed value.
 //!
-//! JSON is parsed only once: the text becomes a value without duplicate keys, and the value becomes
-//! a Rust type. The same traversal yields the JSON pointers of errors and unknown keys.
+//! JSON is parsed only once: first the text becomes a JSON value without duplicate keys, and then
+//! this value becomes a Rust type. The same traversal yields the JSON pointers of errors and
+//! unknown keys.
 //!
 //! The project has its own deserializer because serde_json accepts an array for a derived struct,
 //! and `null` for an optional key. With serde_json, htex would accept files that other readers of
 //! `spec/htex-1.md` refuse. The packages `serde_path_to_error` and `serde_ignored` are no
-//! replacement: they only report the paths of errors and of unknown keys, and they miss unknown
-//! keys next to the key of a variant.
+//! replacement. They only report the paths of errors and of unknown keys, and they miss unknown
+//! keys next to the key of an enum variant.
 
 use std::cell::RefCell;
 use std::fmt::{self, Write};

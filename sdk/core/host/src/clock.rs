@@ -3,8 +3,8 @@
 #[cfg(not(target_family = "wasm"))]
 pub use std::time::Instant;
 
-/// A time of the browser's clock. The standard library cannot read the clock of a browser. On other
-/// systems, `Instant` is the type of the standard library.
+/// A point in time on the browser's clock. The standard library cannot read the clock of a browser.
+/// On other systems, `Instant` is the type of the standard library.
 #[cfg(target_family = "wasm")]
 #[derive(Debug, Clone, Copy)]
 pub struct Instant {

@@ -70,10 +70,10 @@ pub struct WasmLimits {
     pub guards: bool,
 }
 
-/// The engine that runs modules. The variants differ in the resources of the process that the
-/// engine uses: threads and signal handlers. While a module is loaded, every engine except `Off`
-/// has one thread, which stops calls at their time limit. A browser runs modules with its own
-/// engine; `Off` turns that engine off, and the other variants turn it on.
+/// The engine that runs modules. The variants differ in which resources of the process the engine
+/// uses: threads and signal handlers. While a module is loaded, every engine except `Off` has one
+/// thread, which stops calls at their time limit. A browser runs modules with its own engine; `Off`
+/// turns that engine off, and the other variants turn it on.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};

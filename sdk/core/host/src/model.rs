@@ -18,7 +18,7 @@ use crate::{HostError, ModelVoice, Origin, WasmLimits};
 /// Usual sample rate of a sound card, hertz.
 pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
 
-/// Id of the extension of models that follow the motion of the finger.
+/// Id of the ABI extension for models that follow the motion of the finger.
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Length of the parameter buffer in the first call of a function that returns parameters.
 const USUAL_PARAMETERS: usize = 256;
@@ -224,8 +224,8 @@ impl LoadedModel {
         Ok(Fit { parameters, level_rms })
     }
 
-    /// Returns the magnitude of the shape at each frequency in `frequency_hz`. The shape has unit
-    /// RMS on the 5 Hz grid in the band.
+    /// Returns the magnitude of the spectrum's shape at each frequency in `frequency_hz`. The shape
+    /// has unit RMS on the 5 Hz grid in the band.
     ///
     /// # Errors
     /// [`HostError::Call`] if the model refuses the arguments, [`HostError::Broken`] if a magnitude
@@ -301,7 +301,7 @@ impl LoadedModel {
     }
 
     /// Returns whether `rate_hz` is the model's own rate, i.e. the rate that the model returns for
-    /// every requested rate. This function finds out by requesting a much higher rate.
+    /// every requested rate. To find out, this function requests a much higher rate.
     ///
     /// # Errors
     /// Returns the errors of [`Self::voice_rate_hz`].

@@ -42,8 +42,8 @@ pub enum Note {
     },
     /// A file in a plugin folder could not be loaded.
     Broken { path: PathBuf, error: HostError },
-    /// A native library in a plugin folder carries no descriptor, so the host cannot list its model
-    /// without running the library.
+    /// The host cannot list the model of a native library in a plugin folder, because only the
+    /// library's own code could return the model's descriptor.
     Undescribed { path: PathBuf },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's plugin folder, could not be read.
     Folder { path: PathBuf, what: String },

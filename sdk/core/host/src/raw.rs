@@ -1,5 +1,5 @@
-//! Traits with the calls of the model ABI, with slices instead of pointers. Each loader of models
-//! implements these traits.
+//! Traits for the calls of the model ABI. The calls take slices instead of pointers. Each loader of
+//! models implements these traits.
 //!
 //! The code that uses models calls only these traits, so it does not depend on the loader.
 //! [`crate::table`] implements the traits for built-in models and native libraries, `wasm` for

@@ -18,9 +18,9 @@ const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
     /// Returns whether the model's magnitudes describe spectral lines instead of a spectral
-    /// density. The magnitude of a line is the value that a window measures. Sums of sinusoids have
-    /// lines. Models that follow the motion also have lines, because a finger crosses their surface
-    /// repeatedly.
+    /// density. The magnitude of a spectral line is the value that one measures with a window
+    /// function. Sums of sinusoids have lines. Models that follow the motion also have lines: their
+    /// samples repeat, because a finger crosses the same surface again and again.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
@@ -34,8 +34,8 @@ impl LoadedModel {
     /// A voice plays its model's magnitude as a density. If the model keeps energies
     /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
     /// [sharpened](sharpen). For models with spectral lines ([`Self::has_lines`]), this function
-    /// returns the model's magnitude. For sums of sinusoids, the model's magnitude is what a window
-    /// measures within the window's main lobe.
+    /// returns the model's magnitude. For sums of sinusoids, the model's magnitude is the magnitude
+    /// that one measures within the main lobe of the window function.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].

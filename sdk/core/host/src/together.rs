@@ -11,11 +11,12 @@ use crate::{HostError, ModelVoice};
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
 /// Fills `out` with the next `frames` samples of each voice, one voice after another. The samples
-/// are bit-identical to [`ModelVoice::render`] of each voice. Adjacent voices of the same model are
-/// rendered in one call if the model has the extension `htex.voices/1`, as the built-in models do.
-/// The voices of a model without the extension are rendered in separate calls. If `out` is too
-/// short, the remaining voices do not advance; if `out` is too long, its rest is filled with zeros.
-/// Does not allocate, lock or block if the models follow the ABI.
+/// are bit-identical to the samples that separate calls of [`ModelVoice::render`] give. Adjacent
+/// voices of the same model are rendered in one call if the model has the extension
+/// `htex.voices/1`, as the built-in models do. The voices of a model without the extension are
+/// rendered in separate calls. If `out` is too short, the remaining voices do not advance; if `out`
+/// is too long, its rest is filled with zeros. Does not allocate, lock or block if the models
+/// follow the ABI.
 ///
 /// For the model AR in blocks of 256 frames, rendering in one call reduces the time to about six
 /// tenths (`cargo xtask bench`). For fewer than 64 frames, AR saves no time.

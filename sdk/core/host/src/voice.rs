@@ -149,9 +149,9 @@ impl ModelVoice {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the model's voice, but not this value, which keeps the handle.
-    /// With this function, a checker tests whether the model refuses a freed handle. Apps free a
-    /// voice by dropping it.
+    /// For checkers of models: frees the voice inside the model. This value remains and keeps the
+    /// voice's handle. With this function, a checker tests whether the model refuses a freed
+    /// handle. Apps free a voice by dropping it.
     ///
     /// # Errors
     /// The error that the model returns. A second call must return the error for an unknown handle.

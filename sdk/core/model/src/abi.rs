@@ -11,12 +11,12 @@
 //! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). A WASM module imports
 //! nothing.
 
-/// Major version. A host loads only models with its own major version.
+/// Major version. A host loads only models whose major version of the ABI equals the host's.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor version. Every new optional export increases the minor version.
 pub const ABI_MINOR: u32 = 0;
-/// The marker that a model returns. The upper 16 bits are fixed, the next 8 bits are the major
-/// version, and the lowest 8 bits are the minor version.
+/// The version marker of the ABI, which a model returns. The upper 16 bits are fixed, the next 8
+/// bits are the major version, and the lowest 8 bits are the minor version.
 pub const ABI_MARKER: u32 = 0x4854_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
 /// Largest number of parameters in one set, including the lengths of lists.

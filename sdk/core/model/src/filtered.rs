@@ -262,7 +262,7 @@ fn gain(rate_hz: f64, level: f64) -> f64 {
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
 }
 
-/// Checks a filter's level, which is the divisor of magnitudes and samples.
+/// Checks a filter's level, by which the model divides magnitudes and samples.
 ///
 /// # Errors
 /// If the level is not finite, or not above 0.

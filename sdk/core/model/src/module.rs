@@ -1,4 +1,4 @@
-//! What a WASM module needs in place of the standard library: a panic handler and an allocator.
+//! Replacements for the standard library in a WASM module: a panic handler and an allocator.
 //!
 //! A module links no standard library, no serializer and no text formatting. `docs/modules.md`
 //! explains the reasons, and `tests/tests/it/modules.rs` checks the sizes of modules against

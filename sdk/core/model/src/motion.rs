@@ -81,7 +81,7 @@ pub struct FitCondition {
 }
 
 impl FitCondition {
-    /// Converts the two numbers of the ABI; NaN means unknown.
+    /// Converts speed and force from the two numbers of the ABI; NaN means unknown.
     ///
     /// # Errors
     /// [`InvalidArgument`](crate::Status::InvalidArgument) if a number is infinite or out of range.

@@ -1,4 +1,4 @@
-//! What the exported functions need from the platform: locks, the last error, and catching panics.
+//! Platform services that the exported functions need: locks, the last error, and catching panics.
 
 pub use here::Lock;
 pub(crate) use here::{Once, caught, with_last_error};

@@ -49,8 +49,8 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value of the field for assets that an earlier minor version of the model wrote without the
-    /// field. Only for scalars.
+    /// Value that the field gets in an asset from an earlier minor version of the model, if that
+    /// version did not have the field. Only for scalars.
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
     pub usual: Option<UsualRange>,
@@ -168,8 +168,8 @@ impl StaticField {
         Self { store, ..self }
     }
 
-    /// Sets the field's value for assets that an earlier minor version of the model wrote without
-    /// the field. Only for scalars.
+    /// Sets the value that the field gets in an asset from an earlier minor version of the model,
+    /// if that version did not have the field. Only for scalars.
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }

@@ -1,5 +1,5 @@
-//! Builds error texts without the text formatting of the standard library. That formatting has more
-//! code than a small WASM module.
+//! Builds error texts without the text formatting of the standard library. That formatting code
+//! alone is larger than a small WASM module.
 
 use alloc::string::String;
 
@@ -69,7 +69,7 @@ fn push_ascii(text: &mut String, bytes: &[u8]) {
     bytes.iter().for_each(|&byte| text.push(char::from(byte)));
 }
 
-/// Makes a [`String`] of words and numbers, for the message of an [`Error`](crate::Error).
+/// Makes a [`String`] from words and numbers, for the message of an [`Error`](crate::Error).
 ///
 /// ```
 /// let (peak_hz, lines) = (0.1, 3usize);

@@ -26,7 +26,7 @@ pub struct FitInput<'a> {
     /// its option.
     pub options: &'a [f64],
     /// Speed and force of the recording. Both are unknown if the model does not have the extension
-    /// `htex.motion/1`. Each can also be unknown to the host.
+    /// `htex.motion/1`. Each is also unknown if the host does not know it.
     pub condition: FitCondition,
 }
 
@@ -268,8 +268,8 @@ pub trait Model: 'static {
         out: &mut Numbers<'_>,
     ) -> Result<(), Error>;
 
-    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the host's own rate; the host
-    /// resamples the voice's output to it. A model whose output contains only frequencies in the
+    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the host's own rate, to which the
+    /// host resamples the voice's output. A model whose output contains only frequencies in the
     /// band can return a lower rate, which saves computing time.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz

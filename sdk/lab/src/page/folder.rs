@@ -10,14 +10,15 @@
 //! what a page of another folder stored. The same folder always gets the same name. The server
 //! refuses requests to any other host name, including `127.0.0.1`.
 //!
-//! A page must not navigate its tab to another origin. Otherwise, a script could put the contents
-//! of files that the user drops on the page into the new address. No header can forbid navigation:
-//! browsers never supported `navigate-to`, and a sandbox without `allow-top-navigation` restricts
-//! only frames. So each page begins with `stay.js`, which uses the Navigation API to cancel every
-//! navigation to another origin. `stay.js` has no effect in a browser without that API
-//! (`'navigation' in window` is false). The server refuses scripts of service workers, because a
-//! service worker could answer with another page. Two ways to send data remain open to scripts:
-//! host names that a browser looks up ahead of time (`dns-prefetch`), and WebRTC.
+//! A page must not navigate its tab to another origin. Otherwise, a script could read the files
+//! that the user drops on the page, and send their contents to another server as part of the new
+//! address. No header can forbid navigation: browsers never supported `navigate-to`, and a sandbox
+//! without `allow-top-navigation` restricts only frames. So each page begins with `stay.js`, which
+//! uses the Navigation API to cancel every navigation to another origin. `stay.js` has no effect in
+//! a browser without that API (`'navigation' in window` is false). The server does not serve
+//! scripts of service workers, because a service worker could answer a request for the page with a
+//! different page. Two ways to send data remain open to scripts: host names that a browser looks up
+//! ahead of time (`dns-prefetch`), and WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -8,8 +8,8 @@
 //! the gate. If all have passed the gate, the new connection replaces the oldest of all.
 //!
 //! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
-//! read a body before the gate could refuse it, has no deadlines, and uses a thread for each
-//! connection.
+//! read a request's body before the gate could refuse the request. It also has no deadlines, and
+//! uses a thread for each connection.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;

@@ -86,8 +86,8 @@ impl Target {
 /// How much of a take is usable. Each share is a fraction of the take's length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share of time in which the finger slides on its target. Three conditions must hold. All of
-    /// them use means over 50 ms. The friction is at least half its mean over the take. The speed
+    /// Share of time in which the finger slides on its target. Three conditions must hold. All
+    /// three use means over 50 ms. The friction is at least half its mean over the take. The speed
     /// is at least half the target speed, and exceeds the target speed by at most the tolerance.
     /// The force is within the tolerance of its target. If there is no target for the speed or the
     /// force, the condition for that quantity always holds.

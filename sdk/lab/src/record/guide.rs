@@ -38,11 +38,12 @@ pub struct Guidance {
 pub enum Force {
     /// There is no target, or the force is not measured.
     Unknown,
-    /// The force is below the target's range (yellow in the paper).
+    /// The force is below the target's range; the paper (`docs/paper.md`) shows this state in
+    /// yellow.
     Below,
-    /// The force is in the target's range (green in the paper).
+    /// The force is in the target's range; the paper shows this state in green.
     Within,
-    /// The force is above the target's range (red in the paper).
+    /// The force is above the target's range; the paper shows this state in red.
     Above,
 }
 

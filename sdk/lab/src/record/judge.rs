@@ -41,7 +41,7 @@ pub struct Verdict {
     pub force_n: Option<MeanRange>,
     /// How much of the take is usable. Absent if no texture can be read from the take.
     pub coverage: Option<Coverage>,
-    /// Number of 0.2 s segments from which a texture would be read.
+    /// Number of 0.2 s segments that a fit of the take would use.
     pub segments: usize,
     /// Problems of the signals, such as clipping. Each entry is a sentence with the code of the
     /// problem.

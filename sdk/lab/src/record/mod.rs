@@ -5,10 +5,10 @@
 //! flushed to disk. So a program that is killed loses at most the current second, and [`recover`]
 //! converts the contents of the part file to a recording. A complete take is judged ([`judge`]).
 //! The session sets a take aside and records it again if the mean, minimum or maximum of speed or
-//! force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
-//! "Texture recording"). The session also sets a take aside if the finger slides on its target for
-//! too short a time, or if there are too few sweeps ([`Requirements`]). The results are recordings
-//! that `htex fit` reads, each with a JSON file.
+//! force differs from its target by more than the tolerance. In the paper (`docs/paper.md`), the
+//! tolerance is 10 % (Supplementary, "Texture recording"). The session also sets a take aside if
+//! the finger slides on its target for too short a time, or if there are too few sweeps
+//! ([`Requirements`]). The results are recordings that `htex fit` reads, each with a JSON file.
 //!
 //! From a finger to a recording:
 //!
@@ -16,16 +16,17 @@
 //!    acquisition card, a sound card, a library, or a file ([`Replay`]).
 //! 2. `signals` converts these frames to forces: it applies the six-axis calibration, the column
 //!    map and the tare. A tracker ([`TrackerRows`]) has its own sample rate.
-//! 3. A take grows in a [`PartFile`], a file of hashed chunks. The function `finish` makes
-//!    recordings from all part files: from complete takes, from takes that ended with an error, and
-//!    from takes that a killed program left.
+//! 3. During a take, its samples are appended to a [`PartFile`], a file of chunks with hashes. The
+//!    function `finish` makes recordings from all part files: from complete takes, from takes that
+//!    ended with an error, and from takes that a killed program left.
 //! 4. [`judge`] compares speed and force with their targets, over the segments that a fit would
 //!    read. The JSON next to a take tells `htex compare`, `htex process` and the export of studies
 //!    how to read the take.
 //! 5. `guide` defines the state that guides the finger: phase, force, position and new samples. The
 //!    session updates this state with each block. `live` stores the newest 0.4 s of the signal. The
 //!    terminal draws each state. For the web page, the session only stores the newest state. When
-//!    the page requests it, the thread of the page's server computes the spectrum from a copy.
+//!    the page requests this state, the thread of the page's server computes the spectrum from a
+//!    copy of the signal.
 
 mod calibration;
 mod coverage;

@@ -162,9 +162,9 @@ pub struct MeasuredResponse {
 }
 
 impl MeasuredResponse {
-    /// Converts the response to a [`SetupResponse`]. With its help, programs correct recordings for
-    /// the rig, and scenes for the display. [`write_csv`](SetupResponse::write_csv) writes the file
-    /// that recordings and scenes use.
+    /// Converts the response to a [`SetupResponse`]. Programs use this response to remove the
+    /// effect of the rig from recordings, or of the display from scenes.
+    /// [`write_csv`](SetupResponse::write_csv) writes the file that recordings and scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {
         SetupResponse {

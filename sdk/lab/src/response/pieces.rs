@@ -1,7 +1,7 @@
 //! The pieces of recordings: hits or windows, which are averaged or thrown out.
 //!
 //! A response is an average over pieces. Each piece has a time and, if it is thrown out, a reason.
-//! So a reader can judge a measurement without its samples.
+//! So a person who reads the result can judge the measurement without its samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -42,7 +42,7 @@ pub enum Reason {
         /// Value of this sample, in the channel's unit.
         value: f64,
     },
-    /// The recording has no samples for the part before the trigger.
+    /// The recording begins after the start of the window, which lies shortly before the trigger.
     StartsLate,
     /// The recording ends before the end of the window.
     EndsEarly {

@@ -14,8 +14,8 @@ use crate::study::stimulus::Stimulus;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum View {
-    /// The participant must press a key to begin the next trial, or the matching of the next
-    /// texture.
+    /// The participant must press a key to begin the next trial, or to begin the matching of the
+    /// next texture.
     Ready {
         /// The phase that begins.
         phase: Phase,
@@ -73,7 +73,7 @@ impl View {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
     Digit(u8),
-    /// A key of the gain matching.
+    /// A key that the participant can press during the gain matching.
     Gain(GainKey),
     /// The key that begins a trial or continues the session.
     Go,
@@ -88,7 +88,8 @@ pub trait Asker {
     /// so far, and `all` is the number of all trials.
     fn show(&mut self, view: &View, done: usize, all: usize);
 
-    /// Returns the next key since the last [`Self::show`], if there is one.
+    /// Returns the next key that was pressed since the last [`Self::show`], or `None` if no key was
+    /// pressed.
     fn key(&mut self) -> Option<Key>;
 }
 
@@ -96,7 +97,7 @@ pub trait Clock {
     /// Returns the time in milliseconds, since 1970 or since the start of a simulated session.
     fn now_ms(&self) -> u64;
 
-    /// Waits for this time. A simulated clock does not wait, but advances.
+    /// Waits for this time. A simulated clock does not wait, but advances by this time.
     fn pass(&mut self, time: Duration);
 
     /// Advances a simulated clock by the length of something that was played.
@@ -106,7 +107,8 @@ pub trait Clock {
     /// simulated clock.
     fn date(&self) -> Option<String>;
 
-    /// Makes a simulated clock continue from this time. Other clocks ignore this call.
+    /// Sets a simulated clock to the time `ms`, from which it then continues. Other clocks ignore
+    /// this call.
     fn go_on_at(&mut self, ms: u64);
 }
 
@@ -124,7 +126,7 @@ pub struct Playback {
     pub felt: Option<FeltFile>,
 }
 
-/// Plays trials: a renderer and a device.
+/// A renderer and a device, which together play trials.
 pub trait Rig {
     type Error: From<LabError> + std::fmt::Display;
 

@@ -32,7 +32,8 @@ pub struct Export {
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
-    /// Number of trials whose motion left the study's target, as stated in the column `off_target`.
+    /// Number of trials whose speed or force left the study's target, according to the column
+    /// `off_target`.
     pub off_target: usize,
     /// Warnings that an analysis must consider: incomplete sessions, trials whose motion left the
     /// study's target, and devices with different settings.

@@ -48,7 +48,7 @@ pub struct FeltSetup {
     pub source: String,
     /// Settings of the source, as the user gave them.
     pub settings: BTreeMap<String, String>,
-    /// The map of channels, as the user gave it.
+    /// The channel map (which channel carries which signal), as the user gave it.
     pub map: Option<String>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
@@ -58,8 +58,8 @@ pub struct FeltSetup {
     /// Name and version of the program that records.
     pub tool: String,
     /// Whether a recording begins with the first sample of the source. If false, the recording
-    /// begins when the first played sample reaches the display. Trials that are not played in real
-    /// time need this setting, because they have no common clock with the source.
+    /// begins when the first played sample reaches the display. Set this field to true for trials
+    /// that are not played in real time, because they have no common clock with the source.
     pub is_fast: bool,
 }
 
@@ -93,8 +93,8 @@ impl Felt {
     /// sample rate.
     ///
     /// # Errors
-    /// [`LabError::File`], and [`LabError::Setup`] if the format cannot have this sample
-    /// rate.
+    /// [`LabError::File`], and [`LabError::Setup`] if the file format of the recordings cannot
+    /// store this sample rate.
     pub fn new(
         setup: FeltSetup,
         open: OpenSource,
@@ -127,8 +127,8 @@ impl Felt {
         })
     }
 
-    /// Starts the source for a trial. The recording leaves out all samples before the time that
-    /// [`Self::sounds`] states.
+    /// Starts the source for a trial. The recording begins at the time that [`Self::sounds`] sets;
+    /// earlier samples are left out.
     ///
     /// # Errors
     /// If the source cannot be opened or started, or has another sample rate than before.
@@ -204,7 +204,7 @@ impl Felt {
         }
     }
 
-    /// Returns whether a recording is waiting for [`Self::sounds`].
+    /// Returns whether a recording still waits for a call of [`Self::sounds`].
     pub fn waits(&self) -> bool {
         let running = self.running.as_ref();
         running.is_some_and(|running| running.shared.lead_s.get().is_none())

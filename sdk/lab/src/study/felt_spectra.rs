@@ -38,8 +38,8 @@ pub struct FeltSpectra {
     pub csv: String,
     /// Number of recordings that were read.
     pub recordings: usize,
-    /// Number of recordings of trials whose motion left the study's target. [`OffTarget`]
-    /// determines whether they were read.
+    /// Number of recordings that come from trials whose motion left the study's target.
+    /// [`OffTarget`] determines whether they were read.
     pub off_target: usize,
     /// Warnings that an analysis must consider, as sentences.
     pub warnings: Vec<String>,
@@ -105,10 +105,11 @@ impl Reference {
     }
 }
 
-/// Computes the spectra of a folder of answers. For each combination of participant, texture and
-/// model, reads the recordings of all trials and averages their spectra, in the same way as `htex
-/// fit` does for several recordings of one condition. `off_target` states how to treat trials whose
-/// motion left the study's target. `recorded` contains the spectra of the real textures by name.
+/// Computes the spectra of the felt forces in a folder of answers. For each combination of
+/// participant, texture and model, reads the recordings of all trials and averages their spectra,
+/// in the same way as `htex fit` does for several recordings of one condition. `off_target` states
+/// how to treat trials whose motion left the study's target. `recorded` contains the spectra of the
+/// real textures by name.
 ///
 /// # Errors
 /// Returns the errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no

@@ -52,9 +52,10 @@ pub struct Study {
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
-    /// An additional model that serves as a check of the participants. Choose the best available
-    /// model (`bands`). The model is played and rated like the other models, and is marked in the
-    /// results. A participant who gives the hidden reference low ratings is unreliable.
+    /// An additional model with which you check whether a participant's ratings are reliable.
+    /// Choose the best available model (`bands`). The model is played and rated like the other
+    /// models, and is marked in the results. A participant who rates the hidden reference low is
+    /// unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
     /// Number of trials for each combination of texture and model.
@@ -174,8 +175,9 @@ pub struct Training {
     pub trials: u32,
 }
 
-/// Settings of the phase `gain`. The participant matches each texture as played by one model. htex
-/// also uses the resulting gain for the other models (paper, "Gain matching task").
+/// Settings of the phase `gain`. The participant matches the strength of each texture to the real
+/// texture. One model plays the textures during this matching. htex also uses the resulting gain
+/// for the other models (paper, "Gain matching task").
 ///
 /// In the paper, the matching starts at the maximum. In htex, the participant first raises the
 /// level from `start_db` until the texture can be felt, and the matching starts at that level. A
@@ -216,11 +218,12 @@ pub struct Matching {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
-    /// The participant lowers the gain until the strength matches, and then accepts it. The gain
-    /// cannot go up.
+    /// The participant lowers the gain until the strength matches, and then accepts the gain. The
+    /// gain cannot go up.
     #[default]
     Descending,
-    /// The participant moves the gain up and down until the strength matches, and then accepts it.
+    /// The participant moves the gain up and down until the strength matches, and then accepts the
+    /// gain.
     Adjustment,
     /// The participant says whether the texture should be stronger or weaker. After each answer,
     /// the gain moves one step in this direction. The steps are large until the first reversal and
@@ -339,7 +342,7 @@ impl Participants {
 }
 
 impl Texture {
-    /// Returns the name in the results.
+    /// Returns the texture's name in the results.
     pub fn name(&self) -> String {
         let stem = || self.asset.file_stem().unwrap_or_default();
         let of_file = || stem().to_string_lossy().into_owned();

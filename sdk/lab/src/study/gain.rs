@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::study::file::{GainMethod, Matching};
 
-/// A key press while a gain is matched.
+/// A key that the participant presses during the gain matching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainKey {
-    /// Stronger by a step. In a staircase, the answer that the texture should be stronger.
+    /// Stronger by a step. In a staircase, this key means that the texture should be stronger.
     Stronger,
     /// Stronger by a large step.
     MuchStronger,
-    /// Weaker by a step. In a staircase, the answer that the texture should be weaker.
+    /// Weaker by a step. In a staircase, this key means that the texture should be weaker.
     Weaker,
     /// Weaker by a large step.
     MuchWeaker,
@@ -62,7 +62,8 @@ enum Stage {
 }
 
 impl Match {
-    /// Starts a rise from `start_db`, followed by a matching.
+    /// Prepares a matching that first raises the level from `start_db` until the participant feels
+    /// the texture.
     pub fn new(settings: &Matching, start_db: f64) -> Self {
         Self {
             settings: settings.clone(),
@@ -75,8 +76,8 @@ impl Match {
         }
     }
 
-    /// Starts a rise from `start_db` without a matching. The result is the level at which the
-    /// participant feels the texture. The step sizes come from `settings`.
+    /// Prepares a rise of the level from `start_db`, without a matching. The result is the level at
+    /// which the participant feels the texture. The step sizes come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }

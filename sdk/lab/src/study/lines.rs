@@ -107,7 +107,7 @@ pub struct DeviceUsed {
     pub profile: String,
     /// All settings of the device, such as the gain of an amplifier. They include the settings from
     /// the profile and the default values. Two kinds of settings are left out. The first kind is
-    /// file names: the files to which the samples of a trial are written. The second kind is
+    /// the names of the files to which the device writes the samples of a trial. The second kind is
     /// `buffer_ms`, if the motion is not live. In this case, a participant cannot feel the length
     /// of the buffer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -157,7 +157,7 @@ impl DeviceUsed {
     }
 }
 
-/// The source of a session's felt forces, and how it is recorded.
+/// The source from which a session records the felt force, and the settings of the recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SourceUsed {
@@ -166,7 +166,7 @@ pub struct SourceUsed {
     /// Settings of the source, as the user gave them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
-    /// The map of channels, if one was given.
+    /// The channel map (which channel carries which signal); absent if the user gave none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     /// Calibration matrices, row by row.
@@ -193,8 +193,8 @@ pub struct FeltFile {
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
-    /// Each phrase describes a difference of more than 10 % between the measured speed or force and
-    /// the study's motion. Absent if no difference was larger, or if the study sets no target.
+    /// One phrase for each difference of more than 10 % between the measured speed or force and the
+    /// study's motion. Absent if no difference exceeds this limit, or if the study sets no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
     /// Whether speed or force was measured and compared with the study's motion. Absent if neither
@@ -239,7 +239,8 @@ pub struct Answer {
     /// Drive of the display at which the stimulus was played, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// Levels of the samples that were written to the device. Absent in files of an earlier htex.
+    /// Levels of the samples that were written to the device. Absent in files that earlier versions
+    /// of htex wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
     /// How many times the trial was stopped before its end, for any reason: the number of lines of
@@ -272,7 +273,7 @@ pub struct GainPress {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
     /// Levels of the samples that were written to the device before the key press. Absent in files
-    /// of an earlier htex.
+    /// that earlier versions of htex wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
     /// How many times the texture was stopped between the previous key press and this one. The stop
@@ -295,7 +296,7 @@ pub struct Rise {
     /// The phase: training or gain.
     pub phase: Phase,
     pub texture: String,
-    /// The model in which the texture plays.
+    /// The model that plays the texture.
     pub model: String,
     pub key: GainKey,
     /// The level after the key press, decibels relative to the maximum.
@@ -321,7 +322,7 @@ pub struct Rise {
     pub simulated: bool,
 }
 
-/// Levels that were written to a device while something played.
+/// Levels of the samples that were written to a device while a stimulus played.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputLevels {
@@ -368,7 +369,7 @@ pub struct Stop {
 pub enum StopReason {
     /// The participant or the experimenter left the session.
     Left,
-    /// The program was asked to end, or the motion's input ended.
+    /// The program was asked to end, or the input that delivers the finger's motion ended.
     Interrupted,
     /// The device ran out of samples.
     RanDry,

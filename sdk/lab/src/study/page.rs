@@ -1,8 +1,8 @@
 //! The web page that asks the participant during a session ([`crate::page`]).
 //!
 //! Each view has a number, and an answer contains the number of the view that it answers. Therefore
-//! a second press of a key does not count. A press for a view that is no longer shown does not
-//! count either.
+//! a second press of a key does not count: the view with its number has already been answered. A
+//! press for a view that is no longer shown does not count either.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -19,12 +19,12 @@ const SOUND_DBFS: f64 = -18.0;
 pub struct Stimulus {
     pub texture: String,
     pub model: String,
-    /// Length, seconds. `None` plays until the stimulus is stopped.
+    /// Length, seconds. If `None`, the stimulus plays until it is stopped.
     pub seconds: Option<f64>,
     /// Seed of the playback's random numbers.
     pub seed: u64,
-    /// Gain relative to the maximum, decibels. `None` plays at the level that the study's device
-    /// sets.
+    /// Gain relative to the maximum, decibels. If `None`, the stimulus plays at the level that the
+    /// study's device sets.
     pub gain_db: Option<f64>,
     /// Reference level at the time when the participant set the gain: the RMS that was mapped to
     /// the device's drive voltage or preview level, in the assets' unit. Only devices whose
@@ -33,8 +33,8 @@ pub struct Stimulus {
     /// File name, without extension, for the recording of the felt force. `None` if this force is
     /// not recorded.
     pub felt: Option<String>,
-    /// Name of the file for the stimulus, if the device writes files. Examples are `rise-vinyl`,
-    /// `training-0003`, `gain-vinyl` and `trial-0017`.
+    /// Name of the file to which the device writes the stimulus, if the device writes files.
+    /// Examples are `rise-vinyl`, `training-0003`, `gain-vinyl` and `trial-0017`.
     pub file: String,
 }
 
@@ -63,10 +63,10 @@ pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     device.drive_v.or(able.limit).filter(|_| is_display)
 }
 
-/// Applies a gain relative to the maximum to a scene's device. On a display, scales the drive
-/// (`drive_v`, or the display's limit). On a sound device, adds the gain to `level_dbfs`. On all
-/// other devices, adds the gain to `gain_db`. Returns the drive of a display in volts, and `None`
-/// for other devices.
+/// Applies a gain to the device of a scene. The gain is relative to the maximum. On a display,
+/// scales the drive (`drive_v`, or the display's limit). On a sound device, adds the gain to
+/// `level_dbfs`. On all other devices, adds the gain to `gain_db`. Returns the drive of a display
+/// in volts, and `None` for other devices.
 pub fn set_gain(
     device: &mut DeviceChoice,
     able: &Capabilities,

@@ -36,8 +36,8 @@ pub struct FittedAsset {
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
-    /// Notes about the recordings, less severe than warnings. A note names something that was left
-    /// out, and the reason.
+    /// Notes about the recordings, less severe than warnings. A note says what was left out, and
+    /// why.
     pub notes: Vec<Notice>,
     /// All findings about the recordings, in the order of the recordings.
     pub findings: Vec<RecordingFinding>,

@@ -1,10 +1,10 @@
 //! Repeatability: how much the spectra of one texture differ between blocks of time.
 //!
 //! Overlapping windows share samples. Suppose that every second window were averaged into one half
-//! and all other windows into the other half. Both halves would share samples, and the difference
-//! between them would be several times too small. Blocks of time share no samples. Each block lasts
-//! up to a second. The difference between blocks therefore includes the drift of texture, finger
-//! and motion within about a second.
+//! and all other windows into the other half. Because windows overlap, both halves would share
+//! samples, and the difference between them would be several times too small. Blocks of time share
+//! no samples. Each block lasts up to a second. The difference between blocks therefore includes
+//! the drift of texture, finger and motion within about a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -34,8 +34,8 @@ pub(crate) struct Span {
 /// computed from two spectra, one of the odd blocks and one of the even blocks: the RMS of their
 /// difference, divided by √2.
 ///
-/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
-/// division by √2 corrects for this.
+/// Each of the two spectra averages n/2 blocks, so its random error is √2 times the error of an
+/// average over all n blocks. The division by √2 corrects for this.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeatability {
     /// The RMS over nine bands.

@@ -35,7 +35,8 @@ impl Coding {
         }
     }
 
-    /// Returns the asset, coded or not. Parameters and levels stay the same.
+    /// Converts the asset to the coded or the uncoded form, as this choice requires. Parameters and
+    /// levels stay the same.
     #[must_use]
     pub fn of(self, asset: Asset) -> Asset {
         match self {

@@ -46,8 +46,8 @@ pub struct ComparedModel {
     pub held_out: Option<HeldOut>,
     #[serde(flatten)]
     pub difference: Difference,
-    /// How the model's voice fluctuates, compared with the recording. `None` if the recording is
-    /// too short to measure this.
+    /// How the texture that the model renders fluctuates, compared with the recording. `None` if
+    /// the recording is too short to measure this.
     pub fluctuation: Option<FluctuationDifference>,
 }
 

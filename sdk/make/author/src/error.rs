@@ -8,8 +8,8 @@ use htex_format::Quantity;
 use htex_host::HostError;
 use htex_recording::{ReadError, hertz};
 
-/// An error of reading, fitting, making, comparing or simulating textures. Each message says what
-/// is wrong, where, and what to do. [`Self::kind`] returns what an error is about.
+/// An error that occurs while textures are read, fitted, made, compared or simulated. Each message
+/// says what is wrong, where, and what to do. [`Self::kind`] returns what an error is about.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AuthorError {
@@ -248,7 +248,7 @@ pub enum AuthorError {
     /// A file to embed is not a WASM module.
     #[error("{file}: only WASM modules can be embedded")]
     NoModule { file: PathBuf },
-    /// The model of a module to embed is not fitted.
+    /// A module to embed contains a model that was not fitted.
     #[error("{file}: {model} was not fitted; add it to the models to fit")]
     ModuleNotFitted { file: PathBuf, model: String },
     /// A module to embed cannot be read.
@@ -300,8 +300,8 @@ pub enum AuthorError {
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     NoParameters,
-    /// In a texture made by hand, some conditions have a speed or a force that other conditions
-    /// lack.
+    /// In a texture made by hand, some conditions state a speed or a force and other conditions do
+    /// not.
     #[error(
         "some conditions have only a speed or only a force; give both for every condition, or neither"
     )]
@@ -366,7 +366,7 @@ pub enum AuthorError {
 pub enum AuthorErrorKind {
     /// A recording, or a combination of recordings.
     Recording,
-    /// A given setting, parameter or option.
+    /// A setting, parameter or option that the caller gave.
     Setting,
     /// A model, or all models.
     Model,

@@ -64,7 +64,8 @@ impl Exploration {
 }
 
 /// Lowest and highest speed and force in the segments that are read, after a moving average of 50
-/// ms. `None` if the recording does not contain the signal.
+/// ms. A range is `None` if the recording does not contain the signal from which the range is
+/// computed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     /// Range of the scanning speed, mm/s.

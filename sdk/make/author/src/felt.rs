@@ -22,11 +22,12 @@ pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 const SENSATION_EXPONENT: f64 = 0.3;
 
 /// Bound for the difference between two recordings of a surface, in multiples of the first
-/// recording's repeatability (repeatability is a median, not a bound). If a surface is recorded a
-/// second time, the second recording is within this bound in nine out of ten cases. We compared 180
-/// pairs of takes of a robot's fingertip on 20 materials. In 94 % of the pairs, the difference was
-/// at most 3.5 times the repeatability of the first take. In 89 %, it was at most 3 times the
-/// repeatability.
+/// recording's repeatability. The repeatability itself is not a bound but a median: half of all
+/// second recordings differ by more. If a surface is recorded a second time, the second recording
+/// is within this bound in nine out of ten cases. We compared 180 pairs of takes: in each pair, two
+/// recordings of a robot's fingertip on the same material, with 20 materials in total. In 94 % of
+/// the pairs, the difference was at most 3.5 times the repeatability of the first take. In 89 %, it
+/// was at most 3 times the repeatability.
 pub const REPEATABILITY_BOUND: f64 = 3.5;
 
 /// Sensation levels (levels relative to the detection threshold) of two spectra in third-octave
@@ -43,8 +44,8 @@ pub struct Felt {
     pub level_db: Vec<f64>,
     /// Difference of the levels above the threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// RMS of the differences in `error_db`, decibels. Only bands count in which at least one
-    /// spectrum is above the threshold. 0 if there is no such band.
+    /// RMS of the differences in `error_db`, decibels. The RMS covers only bands in which at least
+    /// one spectrum is above the threshold. It is 0 if there is no such band.
     pub error_rms_db: f64,
     /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
@@ -52,7 +53,7 @@ pub struct Felt {
     /// from the energy of all bands together.
     pub total_error_db: f64,
     /// RMS difference in sensation, over all bands. The sensation in a band is the ratio of the
-    /// displacement to the detection threshold, to the power of 0.3. At the threshold, the
+    /// displacement to the detection threshold, raised to the power of 0.3. At the threshold, the
     /// sensation is 1.
     pub sensation_error_rms: f64,
 }
@@ -101,14 +102,14 @@ pub struct FeltError {
     /// soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
     /// Whether the nine-band error is at most [`REPEATABILITY_BOUND`] times the recording's own
-    /// repeatability. A second recording could then differ from the first as much as the model
-    /// does. False if the repeatability is not known.
+    /// repeatability. If this is true, a second recording could differ from the first as much as
+    /// the model does. False if the repeatability is not known.
     pub within_repeatability: bool,
 }
 
 impl FeltError {
-    /// Measures the difference between magnitudes and a recorded spectrum. `nine_band_db` is the
-    /// nine-band error of the magnitudes ([`htex_format::Measure::NineBand`]).
+    /// Measures how the spectrum `magnitude` differs from the recorded spectrum. `nine_band_db` is
+    /// the nine-band error of the magnitudes ([`htex_format::Measure::NineBand`]).
     pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], nine_band_db: Option<f64>) -> Self {
         let by =
             |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
@@ -139,8 +140,8 @@ impl FeltError {
         }
     }
 
-    /// Combines two results into a worst case. Each number of the result is the one of the two
-    /// numbers that is further from 0. A flag is true only if it is true in both results.
+    /// Combines two results into a worst case. For each number, the result takes the value that is
+    /// further from 0. A flag is true only if it is true in both results.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
@@ -159,8 +160,8 @@ impl FeltError {
     }
 }
 
-/// Counts of textures whose error cannot be felt because it is below a listener's difference
-/// threshold, and of textures that cannot be felt themselves. Another count,
+/// Counts of textures by what a listener can feel: textures whose error is below the listener's
+/// difference threshold, and textures that cannot be felt at all. Another count,
 /// `within_repeatability`, is the number of textures whose error is within the recording's own
 /// variation. `within_repeatability` does not show what can be felt: the less well the recordings
 /// repeat, the higher this count is.
@@ -192,7 +193,7 @@ impl FeltShare {
     }
 }
 
-/// Compares what a listener can feel of two spectra on the same frequency grid: `reference` and
+/// Compares how two spectra on the same frequency grid feel to a listener: `reference` and
 /// `magnitude`. Before the comparison, magnitudes are converted to displacements of the skin.
 /// Forces are converted through the skin's impedance, and accelerations and velocities by
 /// integration.

@@ -1,6 +1,6 @@
 //! The third stage of a fit. For each model and condition, this stage fits the parameters and
-//! rounds them as the file stores them. The stage then computes a level for the rounded parameters,
-//! and measures how well the rounded parameters agree with the recording.
+//! rounds them to the values that the file can store. The stage then computes a level for the
+//! rounded parameters, and measures how well the rounded parameters agree with the recording.
 
 use htex_base::finding::Notice;
 use htex_format::{

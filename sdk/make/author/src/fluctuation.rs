@@ -1,4 +1,4 @@
-//! How recordings and voices fluctuate in time, and how much two fluctuations differ.
+//! How recordings and rendered textures fluctuate in time, and how much two fluctuations differ.
 
 use htex_dsp::fluctuation::{EXCESS_BANDS, Fluctuation, envelope_excess};
 use htex_format::Law;
@@ -161,9 +161,9 @@ pub struct FluctuationDifference {
     pub envelope_correlation: [Option<f64>; 2],
 }
 
-/// Differences that 95 % of 148 pairs of takes do not exceed, decibels: in third octaves, and in
-/// the modulation spectrum. The two takes of each pair are of the same surface (a robot's
-/// fingertip, 3 s each).
+/// Limits for two differences between takes, in decibels: the difference in third octaves, and the
+/// difference in the modulation spectrum. Of 148 pairs of takes, 95 % stay within these limits. In
+/// each pair, both takes are recordings of a robot's fingertip on the same surface, 3 s each.
 pub const SECOND_TAKES_DB: [f64; 2] = [2.0, 3.4];
 
 impl FluctuationDifference {

@@ -6,18 +6,18 @@
 //!
 //! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
 //! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
-//! with the speed for other reasons. In recorded strokes without moving lines, the best exponent
-//! `a` was anywhere between -0.5 and 1.5. With the best exponent, the squared difference was still
-//! 0.25 to 0.9 times its value without a shift. Therefore an exponent counts as measured only in
-//! two cases: the squared difference falls to a quarter of its value without a shift, or to a
-//! quarter of its value at the assumed exponent.
+//! with the speed for other reasons. In recorded strokes without spectral lines that move with the
+//! speed, the best exponent `a` was anywhere between -0.5 and 1.5. With the best exponent, the
+//! squared difference was still 0.25 to 0.9 times its value without a shift. Therefore an exponent
+//! counts as measured only in two cases: the squared difference falls to a quarter of its value
+//! without a shift, or to a quarter of its value at the assumed exponent.
 //!
 //! Two spectra have many features that a shift can align by accident. In recorded strokes, one of
 //! 12 pairs of speeds gave an exponent of 0.70, which no third speed confirmed. Therefore two
 //! speeds count only if the odd and the even blocks of time give the same exponent, and if at most
 //! a tenth of the squared difference remains.
 //!
-//! The standard error is a bootstrap: the blocks of every condition are drawn anew, with
+//! The standard error comes from a bootstrap: the blocks of every condition are drawn anew, with
 //! replacement. The 95 % intervals contain the exponent of the true spectra on simulated surfaces
 //! (`the_intervals_contain_the_exponent_of_the_true_spectra`). This exponent is not the same as the
 //! exponent of the relief, because the responses of skin and sensor do not follow the speed. On a

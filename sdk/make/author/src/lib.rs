@@ -12,26 +12,26 @@
 //!    whose speed or force differs from the target, and measures the motion in the remaining
 //!    segments. `spectrum` removes the mean of each segment, applies a Hann window and an FFT,
 //!    combines two axes into one and divides by the setup's response. `findings` reports problems
-//!    of the signals, with stable codes (`spec/recording-findings.md`). The stage also takes the
-//!    options of the spectrum.
+//!    of the signals, with stable codes (`spec/recording-findings.md`). The options of the spectrum
+//!    are settings of this stage.
 //! 2. `conditions` turns the segmented takes into the spectrum of each condition. Recordings with
 //!    the same speed and force are averaged to one condition ([`TextureSpectrum::average`]).
 //!    `blocks` averages the odd and the even blocks of time separately, which gives two spectra
 //!    that share no sample. `law` estimates how frequencies and level follow the motion, and
-//!    `between` adds conditions that are computed by this law. The stage also takes the kind of
-//!    average. For recordings of a free motion, `grid` replaces stages 1 and 2. This module defines
-//!    a grid of speeds and forces. For each point of the grid, `grid` averages the windows in which
-//!    the motion is steady and near that point.
+//!    `between` adds conditions that are computed by this law. The kind of average is a setting of
+//!    this stage. For recordings of a free motion, `grid` replaces stages 1 and 2. This module
+//!    defines a grid of speeds and forces. For each point of the grid, `grid` averages the windows
+//!    in which the motion is steady and near that point.
 //! 3. `fit` turns the conditions into the parameters of each model, rounded as the file stores
 //!    them. `level` computes the level of the *rounded* parameters. From the rounded parameters,
 //!    the models compute magnitudes and samples, and `measure` compares both with the recording. If
 //!    the error in bands is large, `alternatives` tries other options and models, and lists the
 //!    options and models with a smaller error. For a grid, the stage also measures held-out errors.
 //!    It leaves out a block of time, and compares this block with what a player plays from the
-//!    other blocks. The stage also takes the models with their options, and the source of the
-//!    level.
+//!    other blocks. The models with their options, and the source of the level, are settings of
+//!    this stage.
 //! 4. `asset` puts the conditions, parameters, levels and measures together as a [`FittedAsset`].
-//!    The stage also takes name, licence, author and tags.
+//!    Name, licence, author and tags are settings of this stage.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};

@@ -28,8 +28,8 @@ pub struct Agreement {
     /// Energy of the spectrum relative to the energy of the reference, in each of the nine bands,
     /// decibels.
     pub band_error_db: Vec<f64>,
-    /// The gain that would make the total energy equal to the total energy of the reference,
-    /// decibels.
+    /// The gain that would make the total energy of the spectrum equal to the total energy of the
+    /// reference, decibels.
     pub matching_gain_db: f64,
 }
 

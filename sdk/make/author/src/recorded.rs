@@ -40,8 +40,8 @@ pub struct RecordedLoop {
     /// RMS of the samples. By default, models that are fitted to the recording are stored with the
     /// same level.
     pub level_rms: f64,
-    /// Number of segments in the loop. Only segments from the first 30 s of the read parts are
-    /// used.
+    /// Number of segments in the loop. The loop uses segments only from the first 30 s of the parts
+    /// of the recording that are read.
     pub segments: usize,
 }
 

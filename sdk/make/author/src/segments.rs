@@ -81,8 +81,8 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// How much of the finger's sliding the segments of sweeps would represent, compared with all
-/// sliding.
+/// How much of the finger's sliding would be represented if one segment were taken from each sweep,
+/// and how much sliding there is in total.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.

@@ -111,11 +111,12 @@ pub struct TextureSpectrum {
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability: the difference to expect between the spectra of two such recordings.
+    /// Repeatability: the expected difference between the spectra of two recordings of this texture
+    /// at this condition.
     ///
-    /// The read parts of the recordings are cut into blocks of 0.2 to 1 s, which share no sample. A
-    /// segment in the middle of a sweep is one block. `None` if there are fewer than four blocks,
-    /// or if half of the blocks are silent.
+    /// To compute it, the parts of the recordings that are read are cut into blocks of 0.2 to 1 s,
+    /// which share no sample. A segment in the middle of a sweep is one block. `None` if there are
+    /// fewer than four blocks, or if half of the blocks are silent.
     pub repeatability: Option<Repeatability>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,

@@ -45,7 +45,7 @@ pub struct SegmentedTake {
     pub findings: Vec<Finding>,
     /// The reader's warnings, and the findings that are errors or warnings, as sentences.
     pub warnings: Vec<Notice>,
-    /// The findings of severity info, as sentences.
+    /// The findings whose severity is info, as sentences.
     pub notes: Vec<Notice>,
 }
 

@@ -100,8 +100,8 @@ impl TextureDifference {
             && self.models.iter().all(|model| model.at.is_empty())
     }
 
-    /// Returns the worst felt difference of all models and conditions; `None` if no spectra were
-    /// compared.
+    /// Returns the largest felt difference over all models and conditions; `None` if no spectra
+    /// were compared.
     pub fn felt(&self) -> Option<FeltError> {
         let all = self.models.iter().flat_map(|model| &model.at);
         all.map(|at| at.difference.felt.error).reduce(FeltError::worse)

@@ -1,4 +1,4 @@
-//! The cache of job results. The cache finds a result by the key of its job. Entries are
+//! The cache of job results. The cache finds the result of a job by the job's key. Entries are
 //! authenticated ([`StateFolder`]). The cache does not use an entry that another user wrote, or
 //! that a crash left incomplete. The job of such an entry runs again. Entries are not flushed to
 //! disk one by one.

@@ -1,8 +1,9 @@
 //! Finds local and remote files by glob.
 //!
-//! Globs are in recipes, and a recipe may come from anyone. Therefore this module limits the length
-//! and the braces of a glob, because the library that compiles globs is recursive. It also limits
-//! the number of folder entries that are examined for a glob.
+//! Globs are in recipes, and a recipe may come from anyone. The library that compiles globs is
+//! recursive, so a long or deeply nested glob could exhaust the stack. Therefore this module limits
+//! the length and the braces of a glob. It also limits the number of folder entries that are
+//! examined for a glob.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -58,7 +58,7 @@ impl Stamp {
         }
     }
 
-    /// Returns the stamp of a local file.
+    /// Returns the stamp of a local file: its size and times.
     ///
     /// # Errors
     /// Returns errors of the system. Also returns an error if the file has no time of change.

@@ -102,8 +102,8 @@ pub struct Job {
     /// Number of plugins that are embedded in the asset; they are the last in `plugins`.
     pub embedded: usize,
     /// Location of the recipe, if it is remote. The recipe may name files on the server from which
-    /// the recipe comes. It may not name files on any other server of this machine or of its
-    /// network.
+    /// the recipe comes. The recipe is not allowed to name files on any other server that runs on
+    /// this machine or in its network.
     #[serde(default)]
     pub origin: Option<String>,
 }

@@ -30,8 +30,8 @@ pub struct Record {
     pub outcome: Outcome,
     /// Number of segments of each condition.
     pub segments: Vec<usize>,
-    /// For each model, how much of the difference from the recordings is felt. Each number is the
-    /// worst over all conditions.
+    /// For each model, how much of its difference from the recordings can be felt. Each number is
+    /// the worst over all conditions.
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,

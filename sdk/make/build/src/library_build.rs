@@ -390,7 +390,7 @@ fn is_of_input(error: &BuildError) -> bool {
     }
 }
 
-/// Returns the files of a recipe whose hashes are not stored. A build would have to read these
+/// Returns those files of a recipe for which no hash is stored. A build would have to read these
 /// files. Other processes can hash the files in advance with [`hash_file`] and store the hashes
 /// with [`remember`].
 ///
@@ -445,8 +445,8 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
 /// Hashes a local or remote file of a recipe.
 ///
 /// # Errors
-/// If the file cannot be read, if it changes while it is read, or if the recipe may not name the
-/// file's address.
+/// If the file cannot be read, if it changes while it is read, or if the recipe is not allowed to
+/// name the file's address.
 pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
     hash(file, &RemoteFiles::temporary(remote_location(recipe)?))
 }

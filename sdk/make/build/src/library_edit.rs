@@ -97,7 +97,8 @@ impl LibraryEdit {
     ///
     /// # Errors
     /// - A file cannot be read or written.
-    /// - The library lacks a texture that the edit removes or renames, or that the table names.
+    /// - The library lacks a texture that the edit removes or renames, or that the table of
+    ///   metadata names.
     /// - A new name is already the name of another texture in the library.
     /// - A changed texture would not be valid, or states no licence.
     ///

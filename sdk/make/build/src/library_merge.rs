@@ -15,9 +15,11 @@ pub enum OnConflict {
     /// The merge ends with an error.
     #[default]
     Error,
-    /// The merged library gets the texture from the first library that has this name.
+    /// The merged library gets the texture from the first library that contains a texture with this
+    /// name.
     First,
-    /// The merged library gets the texture from the last library that has this name.
+    /// The merged library gets the texture from the last library that contains a texture with this
+    /// name.
     Last,
 }
 
@@ -38,7 +40,7 @@ pub struct LibraryMerge {
     /// The libraries, each with a prefix for the names of its textures.
     pub libraries: Vec<(PathBuf, String)>,
     pub on_conflict: OnConflict,
-    /// What the merged library says about itself.
+    /// Metadata of the merged library itself, such as its version.
     pub metadata: LibraryMetadata,
 }
 

@@ -33,7 +33,7 @@ pub struct BuildsMerge {
     /// The folders, each with a prefix for the names of its textures.
     pub folders: Vec<(PathBuf, String)>,
     pub on_conflict: OnConflict,
-    /// What the merged library says about itself.
+    /// Metadata of the merged library itself, such as its version.
     pub metadata: htex_format::library::LibraryMetadata,
 }
 

@@ -75,7 +75,7 @@ impl MetadataTable {
     }
 }
 
-/// Reads the text of an entry of the metadata. Several tags are separated by `;` or `,`.
+/// Parses the text of one metadata entry. Several tags are separated by `;` or `,`.
 ///
 /// # Errors
 /// When the text of a law is malformed.

@@ -21,9 +21,9 @@ use crate::template::{Fields, fill};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     pub library: String,
-    /// What the library says about itself.
+    /// Metadata of the library itself, such as its version.
     pub metadata: LibraryMetadata,
-    /// What happens to textures of the existing library that the plan does not contain.
+    /// What happens to textures that the existing library contains but the plan does not.
     pub missing: MissingTextures,
     /// Largest number of textures that the library may lose.
     pub max_removed: Option<usize>,

@@ -99,7 +99,8 @@ impl Destination {
     }
 
     /// Tests whether a file can be written at the URI and removed again. Call this function before
-    /// fitting. It finds such errors before hours of work. Without a URI, does nothing.
+    /// fitting. An error then shows at once, and not after hours of work. Without a URI, does
+    /// nothing.
     ///
     /// # Errors
     /// If the file cannot be written or removed.

@@ -57,7 +57,7 @@ pub struct Recipe {
 pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
-    /// What the library says about itself, such as its version.
+    /// Metadata of the library itself, such as its version.
     #[serde(flatten)]
     pub metadata: LibraryMetadata,
     /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
@@ -208,7 +208,8 @@ pub struct Gates {
     /// Largest allowed repeatability value of a condition, decibels. This value is the RMS
     /// difference between odd and even blocks of time, over nine bands, divided by √2.
     pub max_repeatability_db: Option<f64>,
-    /// Codes of findings that no recording may have, such as `RECORDING_CLIPPED`.
+    /// Codes of forbidden findings, such as `RECORDING_CLIPPED`. A texture is left out of the
+    /// library if any of its recordings has such a finding.
     pub deny: Option<Vec<String>>,
     /// Smallest number of 0.2 s segments that every condition must have.
     pub min_segments: Option<usize>,
@@ -236,8 +237,8 @@ impl Recipe {
     /// Parses the text of a recipe.
     ///
     /// # Errors
-    /// If the text is not TOML, has keys or values that a recipe cannot have, or denies a code of
-    /// findings that does not exist.
+    /// If the text is not TOML, has keys or values that a recipe cannot have, or lists a code in
+    /// `gates.deny` that no finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;

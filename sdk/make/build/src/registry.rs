@@ -47,8 +47,9 @@ impl PluginKind {
         }
     }
 
-    /// Returns the kind of a plugin file, without running the file. The kind follows from the name
-    /// of the function that every model, or every device, exports.
+    /// Returns the kind of a plugin file, without running the file. Every model exports a function
+    /// with one fixed name, and every device exports a function with another fixed name. The kind
+    /// follows from the name that the file contains.
     pub fn of(file: &[u8]) -> Option<Self> {
         let has = |name: &[u8]| file.windows(name.len()).any(|part| part == name);
         if has(b"htex_model_abi_version") {

@@ -35,8 +35,8 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Names of textures that the recipe no longer makes but keeps in the library, as an earlier
-    /// build made them.
+    /// Names of textures that the recipe no longer makes but that stay in the library, as an
+    /// earlier build made them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<String>,
     /// For each model (by id), counts of textures in the library. `below_difference_threshold`
@@ -156,8 +156,8 @@ pub struct AssetReport {
     pub held_out: BTreeMap<String, HeldOut>,
     /// Largest nine-band RMS error over all conditions, decibels, for each model (by id).
     pub band_error_rms_db: BTreeMap<String, f64>,
-    /// For each model (by id), how much of the difference from the recordings is felt. Each number
-    /// is the worst over all conditions.
+    /// For each model (by id), how much of its difference from the recordings can be felt. Each
+    /// number is the worst over all conditions.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
     /// Findings about the texture's recordings, grouped by code.

@@ -1,4 +1,4 @@
-//! Renders a second of a texture as sound, for catalogues.
+//! Renders one second of a texture as sound, for catalogues.
 
 use std::error::Error;
 use std::io::Cursor;

@@ -1,11 +1,12 @@
-//! What a build stores for the next build, in the folder `.htex-build` inside the output folder.
+//! Data that a build stores for the next build, in the folder `.htex-build` inside the output
+//! folder.
 //!
-//! A user may have received the folder of the results from somebody else. Its `.htex-build` could
-//! contain false fits, false hashes of files, or a false list of published files. Therefore each
-//! file in `.htex-build` begins with a keyed hash of its name and content. The key belongs to this
-//! user ([`htex_base::files::Key`]). A file without a valid hash is ignored, and the build makes
-//! the file again. If there is no folder in which to store the user's key, this process uses a
-//! temporary key.
+//! A user may have received the output folder from somebody else. The `.htex-build` in this folder
+//! could contain false fits, false hashes of files, or a false list of published files. Therefore
+//! each file in `.htex-build` begins with a keyed hash of its name and content. Each user has a
+//! separate key ([`htex_base::files::Key`]). A build ignores a file that has no valid hash, and
+//! makes the file again. If there is no folder in which to store the user's key, this process uses
+//! a temporary key.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

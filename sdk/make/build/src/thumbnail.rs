@@ -1,4 +1,4 @@
-//! Spectra that are small enough for a page with thousands of textures.
+//! Spectra with few numbers, so that a page can contain the spectra of thousands of textures.
 
 use htex_author::TextureSpectrum;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Reads and writes Android's `VibrationEffect` as JSON, and writes it as Kotlin code. Each file
-//! contains one effect in three forms: a waveform of levels, and the two kinds of envelope of API
-//! level 36.
+//! contains one effect in three forms: a waveform of levels, and the two kinds of envelope that API
+//! level 36 provides.
 //!
 //! The checks follow Android's documentation. A waveform has timings in milliseconds, and
 //! amplitudes between 0 and 255. `VibratorEnvelopeEffectInfo` states two limits of a device: the
@@ -23,7 +23,8 @@ use crate::profile::Profile;
 pub(crate) const LONGEST_POINT_MS: u64 = 1_000;
 const FORMAT: &str = "android.os.VibrationEffect";
 
-/// The same effect in three forms. A device plays one of these forms.
+/// An effect in three forms: a waveform, and two kinds of envelope. A device plays one of these
+/// forms.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Android {

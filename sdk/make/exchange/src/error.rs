@@ -47,7 +47,7 @@ impl Fault {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExchangeError {
-    /// This extension belongs to no format that can be imported.
+    /// No format that can be imported uses this file extension.
     #[error("{file}: no format that is read has this extension; there are {there}")]
     UnknownFormat {
         file: String,
@@ -122,11 +122,11 @@ pub enum ExchangeError {
     Author(#[from] AuthorError),
 }
 
-/// A value that files of a format do not contain, so that the user must give it.
+/// A value that the user must give, because files of a format do not contain it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Missing {
-    /// The setting as a keyword, such as `full_scale`.
+    /// Keyword of the setting with which the user gives the value, such as `full_scale`.
     pub setting: &'static str,
     /// Description of the value for use in messages, as a phrase.
     pub words: &'static str,

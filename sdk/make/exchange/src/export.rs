@@ -29,16 +29,16 @@ pub struct Export<'a> {
     pub path: Path,
     /// The actuator for which the file is made. If `None`, the format's default actuator is used.
     pub profile: Option<&'a Profile>,
-    /// Length of an export at a condition, seconds. This setting is ignored for a stroke, because a
-    /// stroke has its own length.
+    /// Length of the exported vibration, seconds, if the asset is played at a constant condition.
+    /// This setting is ignored for a stroke, because a stroke has its own length.
     pub seconds: f64,
     /// Sample rate of a WAV file, hertz; by default 8000.
     pub rate_hz: Option<f64>,
     /// How an `.hjif` file codes the texture; by default [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// Extension of the file to write. It selects the kind of file if the format has several kinds,
-    /// such as JSON and Kotlin, or `.gltf` and `.glb`. If `None`, the format's first extension is
-    /// used.
+    /// Extension of the file to write. If the format has several kinds of files, the extension
+    /// selects the kind, such as JSON or Kotlin, or `.gltf` or `.glb`. If `None`, the format's
+    /// first extension is used.
     pub extension: Option<&'a str>,
     /// The bytes of the asset's file. If the format stores the asset itself, the exported file
     /// contains these bytes unchanged. If `None`, the asset is encoded again.
@@ -206,7 +206,7 @@ fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, Exchan
     Ok((!coverage.is_inside()).then(|| coverage.to_string()))
 }
 
-/// Writes the vibration that a scene plays as a file of another format. The scene determines
+/// Writes a file of another format with the vibration that a scene plays. The scene determines
 /// models, motion and seed.
 ///
 /// # Errors

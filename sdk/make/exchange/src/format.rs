@@ -53,7 +53,7 @@ pub enum Reads {
     Map,
 }
 
-/// The function that reads a signal from a file that gives frequencies as positions in an
+/// A function that reads a signal from a file whose frequencies are given as positions in an
 /// actuator's range.
 pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
 /// The function that reads a signal.
@@ -63,8 +63,8 @@ type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 /// How assets are exported to a format.
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
-    /// The file stores the vibration that the asset plays at a motion, reduced to what an actuator
-    /// can play.
+    /// The file stores the vibration that the asset plays during a motion, reduced to what an
+    /// actuator can play.
     Signal {
         write: WriteSignal,
         /// The profile that is used unless the user chooses another.
@@ -78,7 +78,7 @@ pub enum Writes {
     Map,
 }
 
-/// The function that writes a played vibration as a file of a format.
+/// A function that writes a vibration, which an asset or a scene has played, as a file of a format.
 pub type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
 type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 

@@ -111,11 +111,11 @@ impl Format {
         Self::find(name).ok_or_else(|| unknown_name("format", name, exported()))
     }
 
-    /// Finds the format that imports a file, by the file's extension.
+    /// Finds the format with which a file is imported, by the file's extension.
     ///
     /// # Errors
-    /// When the extension belongs to no format that can be imported. The error lists the formats
-    /// that can be imported.
+    /// When no format that can be imported has this extension. The error lists the formats that can
+    /// be imported.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
         let extension =
             file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();

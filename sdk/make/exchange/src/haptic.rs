@@ -8,7 +8,7 @@
 //! because earlier editors wrote such points: the last frequency point may lie after this end if
 //! the frequency point before it lies before this end. A frequency in the file is a position in an
 //! actuator's frequency range, so a profile is needed to convert it to hertz. Without frequency
-//! points, the frequency is 0.5.
+//! points, the frequency is at the position 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;

@@ -210,14 +210,14 @@ impl Playing<'_> {
 }
 
 impl Path {
-    /// Makes the path of a finger that moves at one speed (mm/s) and force (N). If one of the
-    /// values is missing, it comes from the default condition of the representation with this
-    /// model. If the default condition does not state the value either, the value comes from the
-    /// paper (80 mm/s, 0.4 N). If both values are missing, the path is the asset's default
-    /// condition.
+    /// Makes the path of a finger that moves at a constant speed (mm/s) and force (N). If one of
+    /// the values is missing, it comes from the default condition of the representation with this
+    /// model. If the default condition does not state the value either, the value is the speed or
+    /// force of the study in the project's paper (80 mm/s, 0.4 N). If both values are missing, the
+    /// finger moves at the asset's default condition.
     ///
     /// # Errors
-    /// When the asset has no such representation.
+    /// When the asset has no representation with this model.
     pub fn at(
         asset: &Texture,
         model: Option<&str>,

@@ -56,8 +56,8 @@ pub struct ImportedAsset {
     /// The bytes of the asset's file. `None` if the imported file does not contain the asset, or if
     /// the given metadata changes the asset.
     file: Option<Vec<u8>>,
-    /// Difference from the signal, as a finger would feel it: one list for each representation,
-    /// with one value for each condition. Empty if the import needs no fit.
+    /// Difference between each fitted model and the signal, as a finger would feel it: one list for
+    /// each representation, with one value for each condition. Empty if the import needs no fit.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// Ids of models that could not be fitted, each with the reason. Empty if the import needs no
     /// fit.
@@ -246,8 +246,8 @@ pub fn recording_of(
 
 /// Fits models to signals that [`recording_of`] returned, and makes an asset. Spectra are computed
 /// from evenly spaced time windows. The full scale is stored in the provenance. The conditions
-/// state no repeatability, because a file that is rendered and repeated does not show how much two
-/// touches would differ.
+/// state no repeatability (how much two touches differ), because a signal that is rendered from a
+/// file and repeated does not contain two touches.
 ///
 /// # Errors
 /// Returns the errors of [`fit_asset`].

@@ -1,4 +1,4 @@
-//! Measures the loss of an export. It reads the written file back, computes the actuator's
+//! Measures the loss of an export. The module reads the written file back, computes the actuator's
 //! vibration with the profile, and compares this vibration with the asset's own samples.
 
 use htex_author::{

@@ -146,7 +146,7 @@ pub(crate) fn rendered_of_file(
 }
 
 /// Renders the sum of patterns, from time 0 to the end of the last pattern. The sum is limited to
-/// the range from -1 to 1, as in an actuator.
+/// the range from -1 to 1, because an actuator cannot vibrate more strongly.
 #[must_use]
 pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
@@ -162,7 +162,8 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
 
 /// Combines patterns into one, for formats with a single envelope. At each time, the level and
 /// frequency of the strongest pattern are used. All transients are kept. At each point, the level
-/// is converted to the exponent 1. Between points, the converted level is interpolated linearly.
+/// is converted to an amplitude (exponent 1). Between points, the converted level is interpolated
+/// linearly.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();

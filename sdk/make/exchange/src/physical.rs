@@ -1,5 +1,5 @@
-//! Values that imported files do not contain: the full scale (the physical value of 1), and the
-//! motion of the finger.
+//! Values that imported files do not contain: the full scale (the physical value of the number 1 in
+//! the file), and the motion of the finger.
 
 use htex_author::Exploration;
 use htex_format::Quantity;
@@ -19,7 +19,8 @@ pub struct Physical {
     pub speed_mm_s: Option<f64>,
     /// Normal force of the finger, newtons.
     pub force_n: Option<f64>,
-    /// Distance between the pixels of an image, mm. It replaces the distance in the file.
+    /// Distance between the pixels of an image, mm. If the user gives this distance, it replaces
+    /// the distance in the file.
     pub pitch_mm: Option<f64>,
 }
 

@@ -3,13 +3,14 @@
 //!
 //! **One tone.** In each block, the power of each band is divided by the squared detection
 //! threshold in this band. The sum over all bands measures how strongly a finger feels the block.
-//! The tone gets a level at which a finger feels it equally strongly, according to the detection
-//! threshold at the tone's frequency. The tone's frequency is the geometric mean of the bands'
-//! frequencies, weighted by each band's share of this sum, and limited to the actuator's range. If
-//! the actuator is too weak at this frequency, the frequency moves towards the resonance until the
-//! actuator is strong enough. If the actuator is too weak at every frequency, it plays the
-//! strongest possible tone, and the block counts as limited. **Samples** are filtered by the
-//! inverse of the actuator's response. This filter raises no frequency by more than 12 dB.
+//! The tone gets the level at which a finger feels the tone as strongly as the block, according to
+//! the detection threshold at the tone's frequency. The tone's frequency is the geometric mean of
+//! the bands' frequencies, weighted by each band's share of this sum, and limited to the actuator's
+//! range. If the actuator is too weak at this frequency, the frequency moves towards the resonance
+//! until the actuator is strong enough. If the actuator is too weak at every frequency, it plays
+//! the strongest possible tone, and the export counts this block as too strong for the actuator.
+//! **Samples** are filtered by the inverse of the actuator's response. This filter raises no
+//! frequency by more than 12 dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;

@@ -1,7 +1,7 @@
 //! Errors of reading recordings, setup responses and motion traces.
 //!
 //! A reader reports what is wrong and where ([`Fault`]). The function that opens the file adds the
-//! file's name.
+//! file's name to the error.
 
 use std::borrow::Cow;
 use std::{fmt, io};
@@ -16,7 +16,7 @@ use crate::recording::RecordingError;
 #[error("{file}{}: {problem}", .place.as_ref().map(|place| format!(", {place}")).unwrap_or_default())]
 #[non_exhaustive]
 pub struct ReadError {
-    /// File name without its directory, or `column map`.
+    /// File name without its directory; `column map` if the error is in the column map.
     pub file: String,
     /// Place of the problem in the file; `None` if the problem is not at a single place.
     pub place: Option<Place>,

@@ -1,5 +1,5 @@
 //! Recordings of a finger sliding on a texture, and the readers of their files. The crate always
-//! reads CSV. Reading any other of the [`FORMATS`] needs a Cargo feature.
+//! reads CSV. To read any other of the [`FORMATS`], enable the Cargo feature of this format.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -86,8 +86,8 @@ use input::{InputFile, file_name};
 /// The recording's warnings list assumed units, gaps in time and unused columns.
 ///
 /// # Errors
-/// See [`ReadError`]. Every error names the file and, if the problem is at one place in the file,
-/// that place.
+/// See [`ReadError`]. Every error names the file. If the problem is at one place in the file, the
+/// error also names this place.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
     // Before the file is read, so that a change during the reading makes the hash unknown instead
     // of wrong.

@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use crate::hash::RecordedFile;
 
-/// Highest sample rate of a recording, hertz. No force sensor is faster, and at this rate sample
-/// counts are still exact.
+/// Highest sample rate of a recording, hertz. No force sensor is faster, and at this rate the
+/// number of samples in a recording can still be computed exactly.
 pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest magnitude of a sample, in any unit. It keeps sums of squares over hours finite.
 const LARGEST: f64 = 1e12;
@@ -25,7 +25,7 @@ pub enum RecordingError {
     /// There are fewer than two samples.
     #[error("a recording needs at least 2 samples, this one has {samples}")]
     TooShort { samples: usize },
-    /// A range contains fewer than two samples.
+    /// There are fewer than two samples between the two given times.
     #[error(
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
@@ -259,8 +259,8 @@ impl Recording {
         }
     }
 
-    /// Returns the name of an axis in messages and in the pointers of findings, such as `lateral_x`
-    /// or `signal`.
+    /// Returns the name of an axis, such as `lateral_x` or `signal`, for messages and for the
+    /// pointers with which findings state a place.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {

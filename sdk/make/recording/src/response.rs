@@ -141,7 +141,7 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a setup response from bytes in memory; `file` is its name in messages.
+/// Reads a setup response from bytes in memory; `file` is the file's name in messages.
 ///
 /// # Errors
 /// Returns the same errors as [`read_response`].

@@ -17,7 +17,7 @@ const SHORTEST_S: f64 = 1e-9;
 /// Largest magnitude of a time (seconds), position (mm), speed (mm/s) or force (newtons).
 const LARGEST: f64 = 1e9;
 
-/// The columns of a motion trace. All have equal lengths of at least two rows.
+/// The columns of a motion trace. All columns have the same number of rows, at least two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumns {
     /// Time, seconds, strictly ascending.
@@ -46,7 +46,7 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a trace from bytes in memory; `file` is its name in messages.
+/// Reads a trace from bytes in memory; `file` is the file's name in messages.
 ///
 /// # Errors
 /// Returns the same errors as [`read_trace`].
@@ -55,7 +55,8 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
     read.map_err(|fault| fault.in_file(file))
 }
 
-/// The columns of a stroke: speed and force over time. All have equal lengths of at least two rows.
+/// The columns of a stroke: speed and force over time. All columns have the same number of rows, at
+/// least two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeColumns {
     /// Time, seconds, strictly ascending.
@@ -78,7 +79,7 @@ pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a stroke from bytes in memory; `file` is its name in messages.
+/// Reads a stroke from bytes in memory; `file` is the file's name in messages.
 ///
 /// # Errors
 /// Returns the same errors as [`read_stroke`].

@@ -10,10 +10,11 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread. A
-//! [`Voice`] is [`Send`], so another thread can make it. Call [`Voice::set_motion`] once per block
-//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter blocks only cost time, because a
-//! voice takes 10 ms to reach a new spectrum and level.
+//! [`Voice::render`] allocates no memory, takes no locks and does not access files, so it may run
+//! in an audio thread. A [`Voice`] is [`Send`], so one thread can make the voice and another thread
+//! can render it. Call [`Voice::set_motion`] once per block of 1 to 10 ms. Longer blocks lag behind
+//! the finger. Shorter blocks need more computation without a benefit, because a voice takes 10 ms
+//! to reach a new spectrum and level.
 //!
 //! # On a sound card
 //!
@@ -46,7 +47,8 @@
 //! | `scene` | | `Scene` and `scene`: plans and renders scenes; `device`: plays them |
 //! | `audio` | | nothing to the library; the example `live` can then use a sound card |
 //!
-//! A program without `wasm` is smaller, but plays only representations of built-in models.
+//! A program without the feature `wasm` is smaller, but plays only representations of built-in
+//! models.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -126,7 +126,7 @@ pub enum Error {
         /// The lowest rate, hertz.
         least_hz: f64,
     },
-    /// A number in the options or in a call is out of range.
+    /// A number in the options, or an argument of a call, is out of range.
     #[error("{name} {value}: {range}")]
     OutOfRange {
         /// Name of the option or argument.
@@ -152,7 +152,7 @@ pub enum Error {
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
     Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
-    /// The conditions to bake do not form a grid: a combination of one of the speeds and one of the
+    /// The conditions to bake do not form a grid: at least one combination of their speeds and
     /// forces is missing.
     #[cfg(feature = "bake")]
     #[error(
@@ -227,9 +227,9 @@ pub enum ErrorKind {
     Io,
     /// The file is not a valid asset.
     InvalidAsset,
-    /// The library is invalid, or has no such texture.
+    /// The library is invalid, or has no texture with this name.
     Library,
-    /// The texture has no such representation.
+    /// The texture has no representation for this model.
     NoRepresentation,
     /// A model is missing, incompatible or not allowed to run.
     NoModel,

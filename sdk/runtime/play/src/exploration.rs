@@ -307,8 +307,8 @@ pub enum Reach {
     /// The model receives the motion and determines frequencies and level itself
     /// ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The voice plays the texture as at the nearest recorded value, and then scales it by the
-    /// asset's law.
+    /// The voice plays the texture at the nearest recorded value, and then scales the texture by
+    /// the asset's law.
     Outside {
         /// The requested value, in mm/s or newtons.
         asked: f64,

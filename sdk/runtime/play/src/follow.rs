@@ -1,5 +1,4 @@
-//! The effects of a motion on a voice's samples: the speed at which the texture is read, the gain,
-//! and silence.
+//! The effects of a motion on a voice's samples: slower or faster playback, the gain, and silence.
 
 use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;

@@ -11,7 +11,8 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
+//! [`Voice::render`] allocates no memory, takes no locks and does not access files, so it may run
+//! in an audio thread.
 //!
 //! This code is not part of `htex`, because `htex` re-exports `htex-scene`, and `htex-scene` needs
 //! this code. If `htex` contained this code, `htex` and `htex-scene` would depend on each other.

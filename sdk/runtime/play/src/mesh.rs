@@ -42,7 +42,7 @@ const ON_SIDE: f64 = 1e-9;
 const NO_WEIGHT: f64 = 1e-12;
 
 /// The weights with which up to three conditions are mixed for a motion. The weights sum to one.
-/// They are ordered by the speeds of their conditions, ascending, and at equal speeds by the
+/// The weights are ordered by the speeds of their conditions, ascending, and at equal speeds by the
 /// forces, ascending.
 ///
 /// ```

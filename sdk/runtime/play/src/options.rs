@@ -108,7 +108,7 @@ impl VoiceOptions {
     }
 
     /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. With 0
-    /// bands, the envelope is off and costs no time.
+    /// bands, the voice computes no envelope.
     #[must_use]
     pub fn with_envelope_bands(mut self, bands: usize) -> Self {
         self.envelope_bands = bands;
@@ -118,8 +118,8 @@ impl VoiceOptions {
     /// Sets whether the texture becomes stronger and weaker in time as its recording did. This
     /// works only if the asset states the strength of the fluctuation
     /// ([`htex_format::Fluctuation`]). By default the noise is stationary. The mean square of the
-    /// samples stays the same. Nobody has tested yet whether this makes a texture feel more real. A
-    /// [`SampleSource`](crate::SampleSource) ignores this option.
+    /// samples stays the same. Nobody has tested yet whether this fluctuation makes a texture feel
+    /// more real. A [`SampleSource`](crate::SampleSource) ignores this option.
     #[must_use]
     pub fn with_fluctuation(mut self, fluctuation: bool) -> Self {
         self.fluctuation = fluctuation;

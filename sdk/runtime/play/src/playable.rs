@@ -68,9 +68,9 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// ```
 ///
 /// # Errors
-/// Returns an error if the fields of the representation differ from the model's. The error is
-/// [`Error::ModelOlder`] if a newer version of the model fitted the representation, and otherwise
-/// [`Error::Fields`].
+/// Returns an error if the fields of the representation differ from the fields of the model. The
+/// error is [`Error::ModelOlder`] if a newer version of the model fitted the representation, and
+/// otherwise [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
     loaded: &LoadedModel,

@@ -161,7 +161,7 @@ impl Texture {
     /// ```
     ///
     /// # Errors
-    /// Returns an error if there is no such representation.
+    /// Returns an error if the texture has no representation for this model.
     pub fn representation<'a>(
         &self,
         model: impl Into<Option<&'a str>>,

@@ -250,7 +250,8 @@ impl Voice {
     /// stopped.
     ///
     /// # Errors
-    /// Returns an error if the model fails. The samples that it did not render are then zero.
+    /// Returns an error if the model fails. The samples that the model did not render are then
+    /// zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let sounding = self.follow.sounding(out.len(), self.frames);
         let (sounding, resting) = out.split_at_mut(sounding);

@@ -1,7 +1,7 @@
 //! The fluctuation of a texture in time: an envelope that multiplies the samples.
 //!
-//! Its logarithm is a sum of sinusoids at random frequencies. This computation needs no filters, so
-//! no block can make the envelope grow without bound.
+//! Its logarithm is a sum of sinusoids at random frequencies. Unlike a filter, a sum of sinusoids
+//! cannot become unstable, so no block can make the envelope grow without bound.
 
 use crate::block::StoredFluctuation;
 use crate::power::exp2;

@@ -28,7 +28,7 @@ pub const MOST_TONES: usize = 64;
 pub const MOST_UP: usize = 64;
 /// Largest number of interpolator coefficients per phase; always a multiple of four.
 pub const MOST_ROW: usize = 64;
-/// Largest number of filters that the conditions of a noise block mix.
+/// Largest number of filters in a noise block; each condition is a mix of these filters.
 pub const MOST_FILTERS: usize = 64;
 /// Largest scale of a filter. With this scale, the scaled product of a 16-bit weight and a 16-bit
 /// coefficient is at most 64.

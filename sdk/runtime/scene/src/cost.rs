@@ -20,8 +20,8 @@ pub struct Costs {
     pub retune_ns: BTreeMap<String, f64>,
     /// Time to process one sample at the stage's rate, nanoseconds, for each stage.
     pub stage_ns: BTreeMap<String, f64>,
-    /// Time to process one sample in a stage that a scene switches on although the stage changes no
-    /// samples, nanoseconds, for each stage. Interpolation and crossfades are not listed and count
+    /// Time to process one sample, nanoseconds, for each stage that a scene has switched on
+    /// although the stage changes no samples. Interpolation and crossfades are not listed and count
     /// as 0.
     pub neutral_ns: BTreeMap<String, f64>,
     /// Time per sample that the renderer itself takes, nanoseconds. The first value applies to a

@@ -40,7 +40,7 @@ pub struct DeviceOverride {
     /// a device that plays.
     pub rehearsal: bool,
     /// Whether the motion is live, i.e. arrives while the scene plays. Missing settings then get
-    /// their live defaults.
+    /// the defaults for a live motion.
     pub live: bool,
     /// Replaces [`DeviceChoice::rate_hz`].
     pub rate_hz: Option<f64>,

@@ -34,7 +34,7 @@ pub enum SceneError {
         asset: PathBuf,
         source: htex_play::Error,
     },
-    /// No model of a surface's representations is available.
+    /// No model is available for any of a surface's representations.
     #[error(
         "surface {surface}: no model of its representations ({there}) is available; \
          `htex plugin list` shows the available ones"
@@ -110,7 +110,7 @@ pub enum SceneError {
         /// The problem, and how to correct it.
         sentence: String,
     },
-    /// The scene switches off an effect that it requires.
+    /// The scene switches off an effect without which it cannot be played.
     #[error("`{effect}` is off, but the scene cannot be played without it: {reason}")]
     Needed {
         effect: String,
@@ -152,7 +152,7 @@ pub enum SceneErrorKind {
     Io,
     /// The scene is invalid, or cannot be planned for its device, rate or budget.
     InvalidScene,
-    /// No model of a surface's representations is available.
+    /// No model is available for any of a surface's representations.
     NoModel,
     /// A texture or its model failed.
     Model,

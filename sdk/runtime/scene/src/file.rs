@@ -37,8 +37,8 @@ pub struct SceneFile {
     /// Seed of all random numbers. The same seed gives the same samples.
     #[serde(default)]
     pub seed: u64,
-    /// Limits for the planner, which chooses the representation of each surface that does not name
-    /// one.
+    /// Limits for the planner. The planner chooses a representation for each surface for which the
+    /// scene names none.
     #[serde(default, skip_serializing_if = "Budget::is_empty")]
     pub budget: Budget,
     /// Effects that the scene switches on or off, instead of leaving the choice to the planner.
@@ -203,7 +203,8 @@ pub enum Levels {
     #[default]
     Normalised,
     /// The drive voltage or the preview level applies to the reference level, whichever
-    /// representation plays the texture. Each representation therefore keeps its own energy.
+    /// representation plays the texture. Representations with different RMS values are therefore
+    /// played at different levels.
     Own,
 }
 
@@ -257,7 +258,7 @@ pub enum Effect {
     Compensation,
     /// Conversion from the rate of the models to the rate of the device.
     Resampling,
-    /// Change of the sign of the force with the direction of the stroke.
+    /// Sign of the force, which changes when the stroke changes its direction.
     Direction,
     /// Conversion from newtons to the device's quantity.
     Gain,

@@ -3,9 +3,10 @@
 //! a file in the user's configuration folder.
 //!
 //! A gain belongs to a texture, not to a file. The key of a gain contains the texture's name and
-//! author, because name and author stay the same after a new fit. A hash of the recordings would
-//! change if a recording were added. The gain stores the RMS at which the voltage was adjusted, so
-//! that a representation with another RMS keeps its own energy.
+//! author, because name and author stay the same after a new fit. The key contains no hash of the
+//! recordings, because this hash would change if a recording were added. The gain also stores the
+//! RMS at which the voltage was adjusted. If levels are not normalised, a representation with
+//! another RMS is therefore played proportionally stronger or weaker.
 
 use std::collections::BTreeSet;
 use std::fs;

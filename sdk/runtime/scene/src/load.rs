@@ -105,7 +105,7 @@ impl Scene {
         Self::open_with(path.as_ref(), &around, &DeviceOverride::default())
     }
 
-    /// Opens a scene file and the files it names, for a device or with other models.
+    /// Opens a scene file and the files it names, with the given models and devices.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::open`].

@@ -70,9 +70,9 @@ impl Trace {
 
     /// Makes a trace from columns.
     ///
-    /// [`velocity`] computes the velocity. A constant velocity is exact, and the steps of a 60 Hz
-    /// tracker have little influence. Negative forces, which an offset of the sensor can cause,
-    /// become 0.
+    /// [`velocity`] computes the velocity. A constant velocity is computed exactly, and the steps
+    /// of a 60 Hz tracker have little influence. Negative forces, which an offset of the sensor can
+    /// cause, become 0.
     ///
     /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last valid row for at most 100
     /// ms. After these 100 ms, impossible rows become rows without contact. Impossible rows are

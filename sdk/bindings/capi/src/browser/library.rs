@@ -71,8 +71,8 @@ pub extern "C" fn htex_index_free(index: u64) -> htex_status {
     guarded(|| INDEXES.remove(index).map(drop))
 }
 
-/// Writes which bytes are needed next to open the library: the offsets of their start and end. The
-/// two offsets are equal once the library is open.
+/// Writes the byte range that JavaScript must fetch next to open the library: the offsets of the
+/// range's start and end. The two offsets are equal once the library is open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
     guarded(|| {

@@ -1,4 +1,4 @@
-//! Calls about textures and voices that JavaScript needs beyond the C interface
+//! Calls for textures and voices that JavaScript needs in addition to the C interface
 //! (`sdk/bindings/web/src/texture.js`). Structured results are JSON.
 
 use std::ffi::c_char;

@@ -1,7 +1,7 @@
 //! The documents of calls: JSON objects. Functions take entries out of these objects by name.
 //!
-//! Only the tables of settings are read with code that `serde` derives, because such code adds a
-//! kilobyte or more to the module for each struct.
+//! Only the tables of settings are read with code that `serde` derives. Such code adds a kilobyte
+//! or more to the module for each struct, so all other documents are read without it.
 
 #[cfg(feature = "make")]
 use serde::de::DeserializeOwned;

@@ -1,4 +1,5 @@
-//! Checks how an output takes samples, and that its status is correct.
+//! Checks that an output device accepts blocks of any size, and that its status counts frames and
+//! reports the peak.
 
 use std::time::Duration;
 

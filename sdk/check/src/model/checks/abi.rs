@@ -1,4 +1,4 @@
-//! Checks of the marker, the exports, the descriptor and extensions.
+//! Checks of a library's marker, exports, descriptor and extensions.
 
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Scale, Store};
 

@@ -1,4 +1,4 @@
-//! Checks for allocations while a voice plays.
+//! Checks that rendering and retuning a voice do not allocate memory.
 
 use htex_host::ModelVoice;
 

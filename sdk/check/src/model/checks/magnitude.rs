@@ -1,4 +1,4 @@
-//! Checks of magnitudes as functions of frequency.
+//! Checks of the magnitudes that a model returns for a list of frequencies.
 
 use htex_host::Band;
 

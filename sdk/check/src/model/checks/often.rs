@@ -1,4 +1,5 @@
-//! Checks that retunes at every block change neither the level nor the spectrum.
+//! Checks that the level and the spectrum stay the same if a voice is retuned to the same
+//! parameters at every block.
 
 use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};

@@ -1,5 +1,5 @@
-//! Checks over the whole range of the parameters: at the bounds, for random sets from a seed, and
-//! for fits of spectra together with their signals.
+//! Checks over the whole range of the parameters: values at the bounds, random values from a seed,
+//! and values from fits to a spectrum and a signal together.
 
 use htex_host::{Band, Stream};
 

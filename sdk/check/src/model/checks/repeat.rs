@@ -1,5 +1,5 @@
-//! Checks that samples depend on the seed, and not on the block size or on other voices, and that
-//! freed handles are refused.
+//! Checks that the samples of a voice depend on its seed, but not on the block size or on other
+//! voices. Other checks here pass freed handles, which the model must refuse.
 
 use htex_host::{Band, HostError, Status};
 

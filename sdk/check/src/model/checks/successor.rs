@@ -1,4 +1,4 @@
-//! Checks that a newer version of a model plays what an older one played.
+//! Checks that a newer version of a model renders the same samples as an older version.
 
 use htex_model::{Descriptor, Field, Kind};
 use semver::Version;

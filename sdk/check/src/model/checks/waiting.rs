@@ -1,4 +1,4 @@
-//! Checks for waiting, input and output while a voice plays.
+//! Checks that rendering, retuning and setting a motion do not wait, and do no input or output.
 
 use htex_host::{ModelVoice, Motion};
 

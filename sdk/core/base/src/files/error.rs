@@ -87,13 +87,13 @@ pub trait AtFile<T> {
     /// Adds the name of the file to the error, and states that the program was reading the file.
     ///
     /// # Errors
-    /// If the result is an error.
+    /// Returns the error with the name of the file, if the result is an error.
     fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 
     /// Adds the name of the file to the error, and states that the program was writing the file.
     ///
     /// # Errors
-    /// If the result is an error.
+    /// Returns the error with the name of the file, if the result is an error.
     fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 }
 

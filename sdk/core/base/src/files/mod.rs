@@ -9,10 +9,10 @@
 //!   to its target. So readers see either the old file or the complete new file.
 //!
 //! If the path of an output file is a symbolic link, the program replaces the link's target and
-//! keeps the permissions of the old target. The program writes directly to a device or a pipe. A
-//! process that receives a signal to end removes its unfinished files with [`remove_unfinished`].
-//! The next process that writes to a folder removes the unfinished files that killed processes left
-//! in this folder.
+//! keeps the permissions of the old target. If the output is a device or a pipe, the program writes
+//! to it directly, without a temporary file. A process that receives a signal to end removes its
+//! unfinished files with [`remove_unfinished`]. The next process that writes to a folder removes
+//! the unfinished files that killed processes left in this folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;

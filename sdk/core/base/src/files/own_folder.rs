@@ -17,7 +17,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::files::{Batch, FileInProgress, Readers, private, read_regular};
 
-/// A folder in which no link is followed.
+/// A folder in which a program reads, writes and removes files without following links.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;

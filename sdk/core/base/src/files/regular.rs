@@ -1,5 +1,5 @@
-//! Reads files that untrusted files name, for example a recipe, a table, a scene, or the JSON next
-//! to a recording.
+//! Reads files whose names come from untrusted files, such as recipes, tables, scenes, or the JSON
+//! next to a recording.
 //!
 //! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory.
 //! Programs therefore read all such files with this module, which reads only regular files, and

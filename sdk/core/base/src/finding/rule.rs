@@ -32,7 +32,7 @@ pub struct Stage {
     pub ends: bool,
 }
 
-/// The last stage. It checks whether there are more than a hundred findings.
+/// The last stage. This stage checks whether there are more than a hundred findings.
 pub const COUNT: Stage =
     Stage { of: "the count of findings beyond the first hundred", ends: false };
 

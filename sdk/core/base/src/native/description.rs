@@ -41,7 +41,7 @@ pub fn description_path(plugin: &Path) -> PathBuf {
 /// plugin's bytes.
 ///
 /// # Errors
-/// If the descriptor is not JSON.
+/// Returns an error if the descriptor is not JSON.
 pub fn description(plugin: &[u8], descriptor: &str) -> Result<String, serde_json::Error> {
     let description = Description {
         htex_descriptor: "1.0".to_owned(),
@@ -51,8 +51,9 @@ pub fn description(plugin: &[u8], descriptor: &str) -> Result<String, serde_json
     Ok(serde_json::to_string_pretty(&description)? + "\n")
 }
 
-/// Returns the descriptor of a plugin as JSON, without running the plugin; `None` if the plugin has
-/// no stored descriptor, or if the description file beside the plugin has the hash of other bytes.
+/// Returns the descriptor of a plugin as JSON, without running the plugin. Returns `None` if the
+/// plugin has no stored descriptor, or if the hash in the description file beside the plugin does
+/// not match the plugin's bytes.
 ///
 /// # Errors
 /// Errors of the system.

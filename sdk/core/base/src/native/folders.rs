@@ -26,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the environment variables for folders that are set to relative paths, with their values.
-/// The other functions of this module ignore such variables.
+/// Returns the environment variables for folders whose values are relative paths, with these
+/// values. The other functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);

@@ -4,10 +4,10 @@
 //! A library is never unloaded, because function pointers, open devices and voices point into its
 //! memory.
 //!
-//! Apart from tests, only this crate loads libraries. A file name without a folder means a file in
-//! the current folder, as in every other argument. There are two exceptions, for which the system's
-//! loader searches: the library of NI-DAQmx, and a `driver` setting without a folder, if the
-//! current folder has no file of this name.
+//! Apart from tests, only this crate loads libraries. As for all other files, a library's file name
+//! without a folder means a file in the current folder. The system's loader searches for the
+//! library only in two cases: for the library of NI-DAQmx, and for a `driver` setting without a
+//! folder, if the current folder has no file of this name.
 
 #[cfg(feature = "key")]
 pub mod description;
@@ -69,8 +69,8 @@ impl Library {
         unsafe { load(OsStr::new(name)) }
     }
 
-    /// Loads the library that a setting names: a path, or a name without a folder. Such a name
-    /// means a file in the current folder or, if there is no such file, the library that the
+    /// Loads the library that a setting names: a path, or a name without a folder. A name without a
+    /// folder means a file in the current folder or, if there is no such file, the library that the
     /// system's loader finds by this name.
     ///
     /// # Safety
@@ -113,7 +113,7 @@ impl Library {
     /// Returns the function or variable with this name.
     ///
     /// # Safety
-    /// The symbol has the type `T`.
+    /// The symbol must have the type `T`.
     #[must_use]
     pub unsafe fn symbol<T: Copy>(self, name: &str) -> Option<T> {
         // SAFETY: guaranteed by the caller.
@@ -131,7 +131,7 @@ impl<E> Symbols<'_, E> {
     /// Returns the function with this name.
     ///
     /// # Safety
-    /// The symbol has the type `T`.
+    /// The symbol must have the type `T`.
     ///
     /// # Errors
     /// Returns an error if the library does not have the function.

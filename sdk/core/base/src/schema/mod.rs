@@ -37,8 +37,9 @@ use serde_json::{Value, json};
 /// Prefix of the schemas' ids. Programs never download anything from this address.
 const BASE: &str = "https://htex.org/schemas/";
 
-/// The characters with Unicode's property `White_Space`, for use in the brackets of a pattern.
-/// Readers of schemas differ in the meaning of `\s`, so patterns do not use it.
+/// The characters with Unicode's property `White_Space`, written for the square brackets of a
+/// regular expression. JSON Schema validators differ in the meaning of `\s`, so patterns do not use
+/// it.
 #[macro_export]
 macro_rules! white_space {
     () => {

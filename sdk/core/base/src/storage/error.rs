@@ -24,7 +24,7 @@ pub enum StorageProblem {
     /// This build can only read local files.
     #[error("this build reads files of this machine only; build it with the feature `cloud`")]
     NoCloud,
-    /// Error with a local file, or with a local copy.
+    /// Reading or writing a local file, or a local copy of a remote file, failed.
     #[error("{error}")]
     Io { error: io::Error },
     /// There is no such file.
@@ -59,7 +59,8 @@ pub enum StorageProblem {
         /// The size of the file.
         len: u64,
     },
-    /// The server cannot send parts of files. Files of up to 1 MiB are read as a whole.
+    /// The server cannot send parts of files. From such a server, htex reads only files of up to 1
+    /// MiB, and reads them as a whole.
     #[error(
         "the server sends whole files only, and it has more than 1 MiB; download it and name the copy"
     )]

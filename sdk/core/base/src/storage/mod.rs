@@ -2,13 +2,15 @@
 //! `https://`, `s3://`, `gs://` or `az://`.
 //!
 //! - A file is written completely or not at all: with one request, or in parts that become a file
-//!   only with the last request. Local files are written next to their targets and then renamed.
+//!   only with the last request. A local file is first written under a temporary name next to its
+//!   target, and then renamed.
 //! - The module retries after temporary failures (503, 429, a stalled or cut connection) with
 //!   growing pauses, within a total time ([`Settings`]). A response that was cut off is resumed at
 //!   the same version of the file.
 //! - Credentials come only from environment variables, and no message contains a credential
 //!   ([`StorageError`]).
-//! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
+//! - [`Remote`] reads byte ranges that all come from the same version of a file, and counts its
+//!   requests and bytes.
 //!
 //! Local files need no feature. Everything else needs the feature `cloud`, which uses the crates
 //! `object_store`, `reqwest` and `rustls`.
@@ -88,7 +90,7 @@ enum NameSource {
 }
 
 impl Storage {
-    /// Creates access to files with these settings and environment variables.
+    /// Creates a storage that uses these settings and environment variables.
     pub fn new(settings: Settings, variables: Variables) -> Self {
         Self { settings, variables, clients: Arc::default(), named: NameSource::ByPerson }
     }
@@ -221,8 +223,8 @@ impl Storage {
     /// sorted by name. Returns at most 1,000,000 files.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::read`], an error for a malformed pattern, and an error for a
-    /// web server.
+    /// Returns the errors of [`Self::read`], an error if the pattern is malformed, and an error if
+    /// the folder is on a web server.
     pub fn list(&self, folder: &Location, pattern: &str) -> Result<Vec<Entry>, StorageError> {
         let pattern = listing::pattern(folder, pattern)?;
         let mut found = match folder.place() {

@@ -1,4 +1,4 @@
-//! Reads ranges of one version of a file.
+//! Reads byte ranges that all come from the same version of a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::storage::cloud::{Store, Version};
 use crate::storage::{Location, StorageError, StorageProblem, local};
 
-/// The number of requests and the number of bytes that reading a file has needed so far.
+/// The number of requests and bytes that the program has needed so far to read a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Usage {
     /// Number of requests that were sent, including retries; for a local file, the number of reads.

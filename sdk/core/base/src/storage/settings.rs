@@ -44,7 +44,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the defaults with the total time from the environment.
+    /// Returns the default settings, except that an environment variable can set the total time.
     ///
     /// # Errors
     /// Returns an error if `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.

@@ -5,7 +5,7 @@ use crate::library::header::EXTENSION;
 /// Splits a texture's address in a library into the library's address and the texture's name.
 /// Returns `None` for any other address.
 ///
-/// The library is a path or a URI. Its file name ends in `.htexlib`.
+/// The library's address is a path or a URI. Its file name ends in `.htexlib`.
 ///
 /// ```
 /// use htex_format::library::split_address;

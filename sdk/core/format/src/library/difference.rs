@@ -37,7 +37,7 @@ impl LibraryDifference {
     /// ```
     ///
     /// # Errors
-    /// If a page of an index cannot be read or breaks a rule.
+    /// Returns an error if a page of an index cannot be read or breaks a rule.
     pub fn between<A: LibrarySource, B: LibrarySource, E>(
         a: &Library<A>,
         b: &Library<B>,

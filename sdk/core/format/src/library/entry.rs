@@ -32,9 +32,9 @@ pub struct Entry {
     pub law: Law,
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
-    /// Licence of the texture; `None` if it states none. The index stores only the first 255 bytes.
-    /// This value and the next four are `None` in a library of version 1.0, because its index does
-    /// not store them.
+    /// Licence of the texture; `None` if the texture states no licence. The index stores only the
+    /// first 255 bytes. This value and the next four are `None` in a library of version 1.0,
+    /// because its index does not store them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
     /// Who made the texture; `None` if the texture does not state it. The index stores only the
@@ -83,10 +83,10 @@ pub struct Interval {
 /// Place of a texture's bytes in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct TexturePlace {
-    /// Range of the texture's own bytes, counted from the start of the payload.
+    /// Range of the bytes that only this texture has, counted from the start of the payload.
     pub own: Range<u64>,
     /// Objects that the texture shares with other textures, in the order in which a reader inserts
-    /// them into the texture's own bytes.
+    /// them into these bytes.
     pub cuts: Vec<Cut>,
     /// The leaf page of the entry, and the entry's number in it.
     pub leaf: usize,
@@ -96,7 +96,7 @@ pub(crate) struct TexturePlace {
 /// A shared object inside a texture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Number of the texture's own bytes before the object.
+    /// Number of bytes before the object, counting only the bytes that the texture does not share.
     pub at: u64,
     /// Range of the object, counted from the start of the shared part.
     pub object: Range<u64>,

@@ -25,7 +25,7 @@ use crate::library::spectra::read_spectra;
 ///
 /// 1. [`Self::leaf_of`] finds the leaf page for the texture's name, and [`Self::leaf_range`]
 ///    returns the byte range of that page in the file.
-/// 2. [`Self::read_leaf`] decodes the page. One of its entries is the texture's entry.
+/// 2. [`Self::read_leaf`] decodes the page. One of the entries in this page is the texture's entry.
 /// 3. [`Self::asset_ranges`] returns the ranges of the texture's bytes, and [`Self::assemble`]
 ///    assembles the texture from these bytes.
 ///
@@ -116,8 +116,8 @@ impl Index {
         self.root.spectra(leaf)
     }
 
-    /// Decodes the spectra of a leaf page's entries from their bytes. The spectra have the order of
-    /// the entries.
+    /// Decodes the spectra of a leaf page's entries from their bytes. The spectra are in the same
+    /// order as the entries.
     ///
     /// # Errors
     /// Returns [`LibraryError::Invalid`] if the page breaks a rule.

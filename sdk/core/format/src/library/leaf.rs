@@ -1,8 +1,8 @@
-//! A leaf page: the entries of consecutive names, stored column by column.
+//! A leaf page: entries with consecutive names, stored column by column.
 //!
 //! Columns help compression: hashes take most of a page and cannot be compressed, but the other
-//! columns can. The writer chooses a page's entries by their unpacked size, so that it need not
-//! compress a page several times to find its size.
+//! columns can. The writer fills a page up to a fixed unpacked size. To fill a page up to a
+//! compressed size, the writer would have to compress the page several times.
 
 use crate::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT, Quantity};
 

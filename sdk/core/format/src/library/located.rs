@@ -48,8 +48,8 @@ impl LibraryFile {
     /// Opens a file by path or URI.
     ///
     /// # Errors
-    /// [`LibraryError::Open`] if a local file cannot be opened, [`LibraryError::Storage`] if a
-    /// remote file cannot be opened.
+    /// Returns [`LibraryError::Open`] if a local file cannot be opened, and
+    /// [`LibraryError::Storage`] if a remote file cannot be opened.
     pub fn open(storage: &Storage, location: &Location) -> Result<Self, LibraryError> {
         if let Some(path) = location.local() {
             return LocalFile::open(path).map(Self::File);

@@ -1,4 +1,4 @@
-//! Reads many textures with few and large reads.
+//! Reads many textures with a few large read operations.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -85,8 +85,8 @@ impl<S: LibrarySource + Sync> Library<S> {
 
     /// Reads the textures of entries, which must come from this library. One read covers several
     /// textures that are near each other in the file, and `at_once` reads run at the same time.
-    /// `take` receives each texture once: in the order of the file or, if `at_once` is above 1, in
-    /// the order in which the reads end.
+    /// `take` receives each texture once. The textures arrive in the order of the file or, if
+    /// `at_once` is above 1, in the order in which the reads end.
     ///
     /// ```no_run
     /// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;

@@ -58,7 +58,7 @@ impl LibraryMetadata {
     /// `;`.
     ///
     /// # Errors
-    /// If there is no such entry.
+    /// Returns an error if there is no such entry.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let value = Some(text.to_owned()).filter(|text| !text.is_empty());
         match name {
@@ -84,7 +84,7 @@ impl LibraryMetadata {
     /// each entry except the description and the changelog is one line.
     ///
     /// # Errors
-    /// If an entry breaks a rule. The text names the entry.
+    /// Returns an error if an entry breaks a rule. The text names the entry.
     pub fn check(&self) -> Result<(), String> {
         let lines = [
             ("version", &self.version),

@@ -53,7 +53,7 @@ pub enum InvalidName {
 /// every name is a relative file path.
 ///
 /// # Errors
-/// If the name breaks a rule. The error says which rule.
+/// Returns an error if the name breaks a rule. The error says which rule.
 ///
 /// ```
 /// use htex_format::library::check_name;

@@ -76,7 +76,7 @@ impl Opening {
     /// `file_bytes` is the length of the whole file.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if the header or the root page breaks a rule.
+    /// Returns [`LibraryError::Invalid`] if the header or the root page breaks a rule.
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
         self.take(bytes, file_bytes).map_err(|fault| {
             // A newer minor version is told first, since it may be the reason of the fault.

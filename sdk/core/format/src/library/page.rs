@@ -1,4 +1,4 @@
-//! The frame of a page: a checksum, the unpacked length and a deflate stream.
+//! The stored form of a page: a checksum, the unpacked length and a deflate stream.
 
 use flate2::{Crc, Decompress, FlushDecompress, Status};
 

@@ -18,7 +18,8 @@ const LEAST_SHARED: usize = 64;
 /// A range of bytes in a store.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Piece {
-    /// Index of the store; 0 is the spool.
+    /// Index of the store that contains the bytes; 0 is the spool (a temporary store for added
+    /// textures).
     pub store: u32,
     pub range: Range<u64>,
 }
@@ -40,8 +41,8 @@ pub(crate) struct Object {
     pub piece: Piece,
     /// Number of times that the object occurs in all textures together.
     pub uses: u64,
-    /// Whether the object is a part of a texture that only equal textures can share. This is false
-    /// for modules.
+    /// `true` for a part of a texture, which only equal textures can share. This is false for
+    /// modules.
     pub is_part: bool,
 }
 

@@ -21,7 +21,7 @@ use crate::library::entry::{Entry, Interval};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Query {
-    /// Words that must all occur in the name or in a tag, ignoring case.
+    /// Words, each of which must occur in the texture's name or in one of its tags, ignoring case.
     pub words: Vec<String>,
     /// Tags that the texture must have, ignoring case.
     pub tags: Vec<String>,
@@ -38,11 +38,11 @@ pub struct Query {
     pub author: Option<String>,
     /// Quantity that the texture must have.
     pub quantity: Option<Quantity>,
-    /// Largest felt difference between the texture and its recordings, decibels. A texture whose
-    /// felt difference is not known does not match.
+    /// Largest felt difference that a texture may have from its recordings, decibels. A texture
+    /// whose felt difference is not known does not match.
     pub felt_error_rms_db: Option<f64>,
-    /// Largest held-out error of the texture, decibels. A texture whose held-out error is not known
-    /// does not match.
+    /// Largest held-out error that a texture may have, decibels. A texture whose held-out error is
+    /// not known does not match.
     pub held_out_error_db: Option<f64>,
 }
 

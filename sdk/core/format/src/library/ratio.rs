@@ -7,7 +7,8 @@ use crate::library::rules as rule;
 
 /// Adds up the sizes of the textures that a program reads. The sum may be at most
 /// [`crate::library::Limits::ratio`] times the size of the library's file. A program that reads all
-/// textures, e.g. to check or to unpack them, must add each texture before it reads the texture.
+/// textures, e.g. to check or to unpack them, must call `add` for each texture before it reads that
+/// texture.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     file_bytes: u64,

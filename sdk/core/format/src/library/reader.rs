@@ -126,7 +126,8 @@ impl<S: LibrarySource> Library<S> {
         self.index.notes()
     }
 
-    /// Returns a counter for programs that read many textures. The counter makes sure that a small
+    /// Returns a counter that adds up the sizes of the textures that a program reads. The counter
+    /// returns an error if the sum is too large for the size of the library's file, so that a small
     /// file cannot unpack to a huge folder.
     ///
     /// ```no_run
@@ -210,7 +211,7 @@ impl<S: LibrarySource> Library<S> {
         self.leaf(leaf).map(Some)
     }
 
-    /// Reads the texture of an entry, which must come from this library.
+    /// Reads the texture of an entry. The entry must come from this library.
     ///
     /// # Errors
     /// Returns the errors of [`Self::get`].
@@ -221,8 +222,9 @@ impl<S: LibrarySource> Library<S> {
     }
 
     /// Reads a texture's description: values for searches, in addition to the facts in the
-    /// texture's manifest. The entry must come from this library. If the page of spectra that
-    /// belongs to the entry's leaf page is not in the cache, the function reads that page.
+    /// texture's manifest. The entry must come from this library. The spectra of all entries on a
+    /// leaf page are on one page of spectra. The function reads this page if it is not in the
+    /// cache.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.
@@ -247,8 +249,8 @@ impl<S: LibrarySource> Library<S> {
         Ok(spectra)
     }
 
-    /// Returns all entries, sorted by name. One read covers many pages, and the pages are decoded
-    /// one after another.
+    /// Returns all entries, sorted by name. One read covers many pages. The iterator decodes a page
+    /// when it reaches the page's first entry.
     pub fn entries(&self) -> Entries<'_, S> {
         let ahead = Ahead::default();
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0, ahead }

@@ -2,8 +2,8 @@
 //! the length of the page and a separator. Each name on a leaf page equals the page's separator or
 //! sorts after it.
 //!
-//! The root page of a million textures fits into the first 16 KiB of the file, so that the first
-//! read contains it.
+//! Even for a library of a million textures, the root page fits into the first 16 KiB of the file,
+//! so that the first read contains it.
 
 use std::ops::Range;
 

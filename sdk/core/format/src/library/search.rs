@@ -23,17 +23,17 @@ pub struct Similar {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duplicate {
     pub entry: Entry,
-    /// Name of the earlier texture in the library whose spectrum is nearest to the spectrum of this
-    /// texture.
+    /// Name of the earlier texture in the library whose spectrum is most similar to the spectrum of
+    /// this texture.
     pub of: String,
     /// RMS difference of the levels of both spectra, decibels.
     pub distance_db: f64,
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Searches the textures that have the given quantity, and returns those with the nearest
-    /// spectra to a given spectrum: at most `most` textures, the nearest first. The function
-    /// considers only textures that match the query and have a spectrum.
+    /// Finds the textures whose spectra are most similar to a given spectrum: at most `most`
+    /// textures, the most similar first. The function considers only textures that have the given
+    /// quantity, have a spectrum, and match the query.
     ///
     /// ```no_run
     /// # use htex_format::library::{Library, Query};
@@ -77,8 +77,8 @@ impl<S: LibrarySource> Library<S> {
 
     /// Returns each texture whose spectrum nearly equals the spectrum of an earlier texture, sorted
     /// by name. The spectra of the two textures differ by at most `within_db`, and both textures
-    /// have the same quantity. So the result does not contain the first texture of a group of equal
-    /// textures. Only textures that match the query are compared.
+    /// have the same quantity. So the result does not contain the first texture of a group with
+    /// nearly equal spectra. Only textures that match the query are compared.
     ///
     /// # Errors
     /// If the index or the spectra cannot be read or break a rule.

@@ -1,9 +1,10 @@
-//! Decides which objects the textures of a library share, and where the file contains their bytes.
+//! Decides which objects the textures of a library share, and where in the file the bytes of these
+//! objects are.
 //!
 //! The writer compares the hashes of all embedded modules, and of all textures. If several textures
 //! embed the same module, the writer stores the module once. It also stores equal textures once. If
-//! only one texture has an object, the object stays among that texture's own bytes, because sharing
-//! the object would save nothing.
+//! only one texture contains a module, the writer keeps the module among that texture's own bytes,
+//! because sharing it would save nothing.
 
 use std::ops::Range;
 

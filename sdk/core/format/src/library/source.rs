@@ -8,8 +8,8 @@ use crate::library::error::LibraryError;
 
 /// A source of a library's bytes: a local file, a buffer, or a file on a server.
 ///
-/// A library reads a few large ranges. When it is opened, it reads the first 16 KiB. For each
-/// texture, it reads a page of the index and the texture's bytes.
+/// A library reads a few large ranges of the source's bytes. When it is opened, it reads the first
+/// 16 KiB. For each texture, it reads a page of the index and the texture's bytes.
 pub trait LibrarySource {
     /// Returns the length of the file, bytes. The library calls this function only after the first
     /// read, so that a network source can take the length from its first response.

@@ -1,5 +1,5 @@
 //! The spool: a temporary store for the added textures while a library is written. The spool is a
-//! file next to the library, or memory.
+//! temporary file next to the library, or a buffer in memory.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;

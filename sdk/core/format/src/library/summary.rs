@@ -27,9 +27,9 @@ pub struct LibrarySummary {
     pub textures: u64,
     /// Size of the library's file, bytes.
     pub bytes: u64,
-    /// Size of all textures together as files, bytes.
+    /// Total size that all textures have as separate files, bytes.
     pub texture_bytes: u64,
-    /// Range of the conditions of all textures.
+    /// Smallest and largest speed and force at which the textures were recorded.
     #[serde(flatten)]
     pub conditions: Conditions,
     /// Number of textures of each licence. The key `none` counts the textures that state no

@@ -17,8 +17,8 @@ use crate::library::spool::ScratchFile;
 /// Number of bytes that the writer collects in memory before it writes them.
 const BUFFER_BYTES: usize = 1 << 20;
 
-/// Writes a library file. Textures may be added in any order; the same textures give the same
-/// bytes.
+/// Writes a library file. Textures may be added in any order: the same textures always give the
+/// same bytes.
 ///
 /// The writer stores added textures in a temporary file next to the target. It keeps only the index
 /// in memory, about 500 bytes for each texture. [`Self::finish`] writes the library to another
@@ -43,8 +43,8 @@ impl Writer {
     /// show to users; it may be empty.
     ///
     /// # Errors
-    /// If the name has a control character or more than 255 bytes, or if the folder of `path` does
-    /// not allow writing files.
+    /// If the name has a control character or more than 255 bytes, or if no file can be written to
+    /// the folder of `path`.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = FileInProgress::create(path).map_err(LibraryError::unchanged(path))?;
@@ -94,9 +94,9 @@ impl Writer {
         self.packer.add(name, asset)
     }
 
-    /// Adds the textures of another library unchanged, without unpacking them. `name` returns the
-    /// new name of an entry, or `None` to leave the texture out. `name` receives the entries in the
-    /// order of their names.
+    /// Adds the textures of another library unchanged, without unpacking them. The function `name`
+    /// receives each entry, in the order of the entries' names. It returns the texture's new name,
+    /// or `None` to leave the texture out.
     ///
     /// The textures are not checked again. [`validate`](crate::library::validate) checks a library
     /// that may be damaged.

@@ -42,7 +42,7 @@ impl Display for SignedKind {
     }
 }
 
-/// What a signature vouches for: the kind, name, version and hash of a file
+/// The content that a signature confirms: the kind, name, version and hash of a file
 /// (`spec/signature-1.md`).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SignedContent {
@@ -58,13 +58,13 @@ pub struct SignedContent {
 }
 
 impl SignedContent {
-    /// Returns the content that a signature of a plugin or a device vouches for.
+    /// Returns the content to sign for a plugin or a device.
     pub fn plugin(kind: SignedKind, id: &str, version: &str, file: &[u8]) -> Self {
         let blake3 = blake3::hash(file).to_hex().to_string();
         Self { kind, name: id.to_owned(), version: version.to_owned(), blake3 }
     }
 
-    /// Returns the content that a signature of an asset's file vouches for.
+    /// Returns the content to sign for an asset's file.
     ///
     /// # Errors
     /// If the bytes are not an asset.
@@ -73,7 +73,7 @@ impl SignedContent {
         Ok(Self::plugin(SignedKind::Asset, &asset.manifest.name, "", file))
     }
 
-    /// Returns the content that a signature of a library vouches for.
+    /// Returns the content to sign for a library.
     #[cfg(feature = "library")]
     pub fn library(index: &crate::library::Index) -> Self {
         Self {
@@ -180,7 +180,7 @@ impl FileSignature {
     }
 }
 
-/// Why a signature does not vouch for a file.
+/// The reason why a signature is not valid for a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SignatureError {

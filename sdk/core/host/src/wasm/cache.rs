@@ -6,8 +6,8 @@
 //! protected.
 //!
 //! The program runs the cached files as machine code. Therefore the program does not use a folder
-//! that belongs to another user or to which other users may write. If a file has no tag made with
-//! this user's key ([`Key`]), the program compiles the module again.
+//! that belongs to another user or to which other users may write. If a file has no keyed hash made
+//! with this user's key ([`Key`]), the program compiles the module again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;

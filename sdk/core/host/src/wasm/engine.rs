@@ -35,9 +35,9 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits for the clock threads of all engines without modules to end, at most 50 ms for each
-/// thread. If this code is in a plugin, the program must call this function before it unloads the
-/// plugin.
+/// Waits until the clock thread of each engine that has no modules has ended, at most 50 ms for
+/// each thread. If this code is in a plugin, the program must call this function before it unloads
+/// the plugin.
 pub fn end_wasm_clocks() {
     // Taken out, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));

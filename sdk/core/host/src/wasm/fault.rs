@@ -1,4 +1,4 @@
-//! Errors of calls of a module.
+//! Errors that a call of a module's function can return.
 
 use htex_model::Status;
 

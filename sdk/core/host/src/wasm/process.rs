@@ -64,10 +64,11 @@ pub(super) fn compile(
     }
 }
 
-/// Compiles the module on standard input and writes the result to standard output. A host starts
-/// the program that [`WasmCompiler::Program`](crate::WasmCompiler) names. The host passes the
-/// arguments of that variant first, and then its own arguments. `arguments` contains only the
-/// host's own arguments. On Unix, the process first limits its memory and its processor time.
+/// Reads a module from standard input, compiles it, and writes the result to standard output. A
+/// host starts the program that [`WasmCompiler::Program`](crate::WasmCompiler) names. The host
+/// passes the arguments of that variant first, and then its own arguments. `arguments` contains
+/// only the host's own arguments. On Unix, the process first limits its memory and its processor
+/// time.
 ///
 /// ```no_run
 /// let arguments: Vec<String> = std::env::args().skip(1).collect();

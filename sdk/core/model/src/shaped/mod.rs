@@ -203,8 +203,8 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 /// then writes no power, the old spectrum continues without an error. Detect invalid parameters in
 /// [`set`](Self::set) if that is cheap.
 pub trait Curve: Sized + Send + 'static {
-    /// Makes the curve of these parameters in a band. This function may allocate, except if the
-    /// type keeps the default [`Self::set`], because the default calls this function on the render
+    /// Makes the curve of these parameters in a band. This function may allocate only if the type
+    /// overrides [`Self::set`], because the default of `set` calls this function on the render
     /// thread.
     ///
     /// # Errors

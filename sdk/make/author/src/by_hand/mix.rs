@@ -24,17 +24,17 @@ impl MixedAsset<'_> {
     }
 }
 
-/// Mixes two textures. `weight` is the share of `b`, from 0 to 1. Each model that both textures
-/// contain interpolates between the parameters of the two textures, with the same method as between
-/// the conditions of one texture. Levels are interpolated linearly.
+/// Mixes two textures. `weight` is the share of `b`, from 0 to 1. If both textures contain a model,
+/// this model interpolates between the parameters of the two textures, with the same method as
+/// between the conditions of one texture. Levels are interpolated linearly.
 ///
-/// The result has the conditions of both textures. If only one texture has a condition, the
-/// parameters of the other texture are interpolated for this condition, as in a player. The law
-/// comes from the texture with the larger weight, or from `a` if the weights are equal. A texture
-/// may store triangles of conditions. A player interpolates within these triangles. If the texture
-/// that gives the law has exactly the conditions of the result, the result gets the triangles of
-/// this texture. Otherwise the result has no stored triangles. In this case, htex adds a warning if
-/// one of the two textures had triangles.
+/// The result has the conditions of both textures. If a condition occurs in only one of the
+/// textures, the parameters of the other texture are interpolated for this condition, as in a
+/// player. The law comes from the texture with the larger weight, or from `a` if the weights are
+/// equal. A texture may store triangles of conditions. A player interpolates within these
+/// triangles. If the texture that gives the law has exactly the conditions of the result, the
+/// result gets the triangles of this texture. Otherwise the result has no stored triangles. In this
+/// case, htex adds a warning if one of the two textures had triangles.
 ///
 /// # Errors
 /// When the weight is out of range, when the textures have no model in common, when their

@@ -1,6 +1,6 @@
 //! Textures made without a recording: from parameters written by hand, or by mixing two textures.
-//! The paper names both methods as uses of a representation with few numbers (Balasubramanian &
-//! Vardar 2026, Discussion).
+//! The paper names both methods as possible uses of a representation that consists of few numbers
+//! (Balasubramanian & Vardar 2026, Discussion).
 //!
 //! An asset of such a texture stores how the texture was made ([`htex_format::Made`]). The asset
 //! stores no measures of quality, because there is no recording to compare it with.

@@ -19,7 +19,7 @@ const HIGHEST_HZ: f64 = 20_000.0;
 #[non_exhaustive]
 pub struct ByHand {
     pub name: String,
-    /// Values by field name. If a field is a list, its entry contains all values of the list.
+    /// Values by field name. If a field is a list, its entry here contains all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit.
     pub level_rms: f64,
@@ -124,7 +124,7 @@ pub struct ByHandModel {
 #[derive(Debug, Clone)]
 pub struct ByHandAt {
     pub condition: Condition,
-    /// Values by field name. If a field is a list, its entry contains all values of the list.
+    /// Values by field name. If a field is a list, its entry here contains all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit. Optional for a model whose
     /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]).

@@ -1,13 +1,13 @@
 //! Detection of outliers: a few large outliers of any shape, or many outliers of one sample each.
 //!
-//! A corner is the difference between a sample and the mean of its two neighbours. A texture has
-//! sharp corners of its own (stick and slip), so a large number of corners proves nothing. To
-//! repair a sample means to replace it by a value interpolated from its neighbours. A texture's
-//! corner lasts several samples, so the corner remains when one sample is repaired. The corner of a
-//! single-sample outlier disappears when the outlier is repaired. In 240 third-party recordings,
-//! such a repair removes at most four corners of 12 times the usual size per recording. Corners of
-//! five times the usual size disappear at no more than 0.1 % of the samples, except for 0.62 % in a
-//! recording of a motor's current.
+//! A corner is the difference between a sample and the mean of its two neighbours. A texture itself
+//! has sharp corners (stick and slip), so a large number of corners does not prove that there are
+//! outliers. To repair a sample means to replace it by a value interpolated from its neighbours. A
+//! texture's corner lasts several samples, so the corner remains when one sample is repaired. The
+//! corner of a single-sample outlier disappears when the outlier is repaired. In 240 third-party
+//! recordings, such a repair removes at most four corners of 12 times the usual size per recording.
+//! Corners of five times the usual size disappear at no more than 0.1 % of the samples, except for
+//! 0.62 % in a recording of a motor's current.
 
 use std::ops::Range;
 

@@ -1,11 +1,11 @@
 //! Cross-validation over time: each quarter of the recordings is left out in turn and predicted
 //! from the other three quarters.
 //!
-//! Neighbouring cells share windows, and windows overlap. A condition that is predicted from
-//! neighbouring cells would be compared with some of the samples that the prediction uses. Blocks
-//! of time share no samples. The blocks are long because a finger and its motion drift. Samples
-//! recorded within a second of a short block would predict this block too well. The error would
-//! then be smaller than the error of a later playback.
+//! Neighbouring cells share windows, and windows overlap. If a condition were predicted from
+//! neighbouring cells, the prediction would use some of the samples with which it is then compared.
+//! Blocks of time share no samples. The blocks are long because a finger and its motion drift.
+//! Samples recorded within a second of a short block would predict this block too well. The error
+//! would then be smaller than the error of a later playback.
 
 use std::ops::Range;
 

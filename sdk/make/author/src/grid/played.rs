@@ -1,5 +1,5 @@
-//! Recorded spectra at other motions: what a player would play if a model reproduced the spectra
-//! without an error.
+//! Spectra at motions other than the recorded ones: what a player would play if a model reproduced
+//! the recorded spectra without an error.
 
 use htex_format::{AtCondition, Condition, Contact, Law};
 use htex_play::exploration::CEILING;

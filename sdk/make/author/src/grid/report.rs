@@ -18,7 +18,7 @@ pub enum CellStatus {
     /// The cell has enough windows.
     Fitted,
     /// The cell itself has too few windows. Together with the nearest windows of neighbouring
-    /// cells, it has enough.
+    /// cells, the cell has enough windows.
     Widened,
     /// The cell has too few windows and did not become a condition.
     Thin,

@@ -1,4 +1,5 @@
-//! Request for a grid: lines at given speeds and forces, or chosen from the recordings.
+//! Request for a grid of conditions. The user gives the grid's lines (speeds and forces), or the
+//! fit chooses them from the recordings.
 
 use std::str::FromStr;
 

@@ -54,7 +54,7 @@ impl Series {
         }
     }
 
-    /// Creates stems with a dot at the end of each.
+    /// Creates stems (a vertical line from zero to each point) with a dot at each point.
     pub fn stems(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self { line: Line::Stems, marker_radius_px: Some(2.5), ..Self::line(name, points) }
     }

@@ -58,7 +58,7 @@ pub struct Row {
 /// A table with a header for each row and column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// What the numbers are, with their unit.
+    /// Name of the quantity that the cells show, with its unit.
     pub caption: String,
     /// Header of the column that holds the row headers.
     pub corner: String,

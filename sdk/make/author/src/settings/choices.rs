@@ -1,4 +1,5 @@
-//! Command-line values of settings that are choices. The values have the same names as in recipes.
+//! The values that the command line accepts for settings with a fixed list of choices. The values
+//! have the same names as in recipes.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;

@@ -317,8 +317,8 @@ impl FitSettings {
 }
 
 /// Returns the models with these names, each once. `all`, or an empty list, means the default
-/// models ([`Registry::by_default`]). Models that the running program has registered itself, such
-/// as models written in Python, come last among the default models.
+/// models ([`Registry::by_default`]). Models that the running program has added to the registry,
+/// such as models written in Python, come last among the default models.
 ///
 /// # Errors
 /// When a model is unknown.

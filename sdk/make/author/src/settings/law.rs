@@ -1,4 +1,4 @@
-//! Exponents of a law given by the user.
+//! Exponents of a texture's law, given by the user.
 
 use std::str::FromStr;
 
@@ -58,7 +58,8 @@ impl TryFrom<Exponents> for GivenLaw {
 }
 
 impl GivenLaw {
-    /// Returns `law`, with the given exponents in place of its own.
+    /// Returns `law`, in which the exponents that the user gave replace the exponents of `law`
+    /// itself.
     #[must_use]
     pub fn over(&self, law: Law) -> Law {
         let given = |given: Option<f64>, own: Exponent| given.map_or(own, Exponent::given);

@@ -11,8 +11,8 @@ settings! {
     /// value; an empty text removes it.
     #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
     pub struct Metadata {
-        /// Name of the texture. In a recipe, the name is not among the metadata but next to the
-        /// recordings.
+        /// Name of the texture. In a recipe, `name` is not a key of the metadata. It is a key
+        /// beside `recordings`.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,

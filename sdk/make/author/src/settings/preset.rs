@@ -56,7 +56,7 @@ impl Preset {
         }
     }
 
-    /// Returns the level at which each model plays.
+    /// Returns where the level of each representation comes from.
     pub const fn level(self) -> Level {
         match self {
             Self::Paper => Level::Fitted,

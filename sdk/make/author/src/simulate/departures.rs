@@ -1,11 +1,12 @@
 //! Departures of simulated hands and surfaces from the law of a rigid relief.
 //!
-//! If a finger reads a rigid relief, the frequencies are proportional to the speed and the level of
-//! the friction is proportional to the normal force. Recorded textures depart from both rules. On
-//! four materials at three speeds, the level rose with the speed to the power of 0.69 to 0.82. The
-//! exponents of the force were between -0.07 and 2.6. The frequencies of tools' accelerations do
-//! not depend on the speed. A method that assumes a rigid relief must also be tested on other
-//! surfaces; tests on rigid reliefs would not show where the method fails.
+//! If a finger slides over a rigid relief, the frequencies are proportional to the speed and the
+//! level of the friction is proportional to the normal force. Recorded textures depart from both
+//! rules. On four materials at three speeds, the level rose with the speed to the power of 0.69 to
+//! 0.82. The level changed with the normal force to a power between -0.07 and 2.6. When a tool
+//! slides over a surface, the frequencies of the tool's acceleration do not depend on the speed. A
+//! method that assumes a rigid relief must also be tested on other surfaces; tests on rigid reliefs
+//! would not show where the method fails.
 
 use htex_dsp::normal::Normal;
 
@@ -23,8 +24,9 @@ const SLOWEST_MM_S: f64 = 1.0;
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// How a simulated surface and hand differ from a rigid relief under a steady hand. By default,
-/// there is no difference. The exponents scale the texture relative to 80 mm/s and 0.4 N.
+/// How a simulated surface and hand differ from the ideal case: a rigid relief and a steady hand.
+/// By default, there is no difference. The exponents scale the texture relative to 80 mm/s and 0.4
+/// N.
 ///
 /// ```
 /// use htex_author::simulate::{Departures, SimulationOptions, Surface, simulate};

@@ -1,9 +1,9 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
 //! Use them for tests, examples and first steps without a recording rig. For five surfaces, the
-//! paper's Results state which are stronger and at which frequencies their energy lies. The five
-//! simulated surfaces agree with this description. The simulation does not use measurements of real
-//! surfaces. Every simulated file states that it is simulated.
+//! paper's Results state which of the surfaces are stronger, and at which frequencies their energy
+//! lies. The five simulated surfaces agree with this description. The simulation does not use
+//! measurements of real surfaces. Every simulated file states that it is simulated.
 //!
 //! The hand's speed and force vary. A fixed relief gives the friction coefficient at each position
 //! along the surface. The simulation reads the relief at the finger's position. Therefore the
@@ -123,7 +123,7 @@ pub struct SimulationOptions {
     /// The kind of motion. A free motion has its own ranges of speed and force, which replace
     /// `speed_mm_s` and `force_n`.
     pub motion: Motion,
-    /// Departures of the surface and the hand from a rigid relief under a steady hand.
+    /// How the surface and the hand differ from the ideal case: a rigid relief and a steady hand.
     pub departures: Departures,
 }
 
@@ -182,7 +182,8 @@ impl SimulationOptions {
         self
     }
 
-    /// Sets the departures of the surface and the hand from a rigid relief under a steady hand.
+    /// Sets how the surface and the hand differ from the ideal case: a rigid relief and a steady
+    /// hand.
     #[must_use]
     pub fn with_departures(mut self, departures: Departures) -> Self {
         self.departures = departures;
@@ -354,7 +355,7 @@ impl Simulation {
     /// gives an equal recording. `source` is the file name.
     ///
     /// # Errors
-    /// None if the simulation comes from [`simulate`].
+    /// Returns no error if the simulation comes from [`simulate`].
     pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
         let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
         let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);

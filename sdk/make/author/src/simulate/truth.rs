@@ -90,7 +90,7 @@ impl SimulationOptions {
 }
 
 impl Truth {
-    /// Returns the multiples of 5 Hz in the band, hertz.
+    /// Returns the frequencies, hertz: the multiples of 5 Hz in the band.
     #[must_use]
     pub fn frequency_hz(&self) -> Vec<f64> {
         self.band.grid_hz()

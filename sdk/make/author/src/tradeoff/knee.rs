@@ -13,7 +13,7 @@ const STEP: f64 = 0.05;
 /// The knee of a Pareto front, and the next more accurate setting on the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Knee {
-    /// The recording, or the median of all recordings.
+    /// The recording to which the front belongs, or the median of all recordings.
     pub recording: String,
     /// A model's short name, or `all models`.
     pub of: String,

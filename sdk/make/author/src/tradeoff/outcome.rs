@@ -60,8 +60,8 @@ pub struct RecordingSummary {
     pub simulated: bool,
     /// Repeatability of the recording (RMS over nine bands), dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Total number of odd and even blocks of time in the read parts of the recording. The even
-    /// blocks are held out. `None` if there are too few blocks.
+    /// Total number of odd and even blocks of time in the parts of the recording that are read. The
+    /// even blocks are held out. `None` if there are too few blocks.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,

@@ -115,12 +115,12 @@ impl Shares {
     }
 }
 
-/// Returns the measures of a point that are errors.
+/// Returns the error measures of a point.
 pub fn errors() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged == MeasureKind::Error)
 }
 
-/// Returns the measures of a point that are not errors.
+/// Returns all other measures of a point, which are not errors.
 pub fn others() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged != MeasureKind::Error)
 }
@@ -128,7 +128,7 @@ pub fn others() -> impl Iterator<Item = Measure> {
 /// Accuracy of rendered samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RenderedAccuracy {
-    /// The measures of several renderings, averaged to one spectrum.
+    /// The measures of the mean spectrum of several renderings.
     pub measures: Measures,
     /// Half the range of the nine-band errors of the individual renderings, dB.
     pub band_error_spread_db: f64,

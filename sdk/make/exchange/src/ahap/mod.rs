@@ -1,16 +1,16 @@
 //! Reads and writes Apple's Core Haptics files, `.ahap` version 1. A file contains continuous
-//! events, transient events, and controls. Controls change the events; their values over time are
-//! curves between control points.
+//! events, transient events, and controls. Controls change the events. The values of a control over
+//! time form a curve between control points.
 //!
 //! The code follows Apple's documentation (*Representing haptic patterns in AHAP files*;
 //! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). The intensity control multiplies the
-//! intensity of events. The sharpness control is added to the sharpness of events. A control
-//! applies to all events from its first point on. Between points, the value of a control is linear.
-//! The times of a curve's points are relative to the start of the curve. Apple does not define
-//! physical meanings of intensity and sharpness. This module uses two existing conventions. An
-//! intensity is the square root of an amplitude, as in Meta's conversion
-//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk). A sharpness is a position in a
-//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
+//! intensity of events. The sharpness control is added to the sharpness of events. From its first
+//! point on, a control applies to all events. Between points, the value of a control is linear. The
+//! times of a curve's points are relative to the start of the curve. Apple does not define physical
+//! meanings of intensity and sharpness. This module uses two existing conventions. An intensity is
+//! the square root of an amplitude, as in Meta's conversion (core/haptic_data/src/ahap.rs of
+//! facebook/meta-haptics-sdk). A sharpness is a position in a range of frequencies, as in the
+//! reference software of ISO/IEC 23090-31.
 
 mod control;
 mod write;
@@ -79,7 +79,7 @@ pub struct Value {
     pub value: f64,
 }
 
-/// A new value of a control, which takes effect at once.
+/// A new value of a control, which takes effect immediately.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     #[serde(rename = "ParameterID")]
@@ -171,8 +171,8 @@ impl Ahap {
         })
     }
 
-    /// Returns the vibrations for an actuator. Each continuous event gives one vibration, and all
-    /// transients together give one more.
+    /// Returns the file's vibrations, as an actuator with this profile plays them. Each continuous
+    /// event becomes one vibration. All transients together become one further vibration.
     #[must_use]
     pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
         let controls = Controls::new(&self.pattern);

@@ -23,9 +23,9 @@ pub struct Material {
     /// on the surface a point lies.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Lengths on the surface, in millimetres, that correspond to one unit of the first texture
-    /// coordinate and one unit of the second. If this property is missing, distances on the surface
-    /// follow from the geometry.
+    /// Two lengths on the surface, in millimetres: the length of one unit of the first texture
+    /// coordinate, and the length of one unit of the second. If this property is missing, distances
+    /// on the surface follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,

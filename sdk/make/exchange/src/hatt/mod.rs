@@ -5,13 +5,13 @@
 //! and zeros. The filter runs at a sample rate of 1 kHz. White noise with the node's variance
 //! passes through the filter and is multiplied by the node's gain. The result is the acceleration
 //! of a rigid tool, m/s². The asset has the same filters at the same speeds and forces (model
-//! `org.htex.arma`), with the toolkit's triangles between them. The extension [`EXTENSION`] stores
-//! the values that a player does not use: friction, sample rate, and the largest speed and force.
-//! At each node, the asset has the same magnitudes as the file's filter. Between nodes, the toolkit
-//! interpolates line spectral frequencies, variance and gain. A player of the asset interpolates
-//! the same line spectral frequencies, but it interpolates levels instead of variance and gain. A
-//! node of variance 0 is silent, but its line spectral frequencies are still used in the
-//! interpolation.
+//! `org.htex.arma`). It also has the toolkit's triangles, which connect these pairs of speed and
+//! force. The extension [`EXTENSION`] stores the values that a player does not use: friction,
+//! sample rate, and the largest speed and force. At each node, the asset has the same magnitudes as
+//! the file's filter. Between nodes, the toolkit interpolates line spectral frequencies, variance
+//! and gain. A player of the asset interpolates the same line spectral frequencies, but it
+//! interpolates levels instead of variance and gain. A node of variance 0 is silent, but its line
+//! spectral frequencies are still used in the interpolation.
 //!
 //! Line spectral frequencies are stored as 32-bit floats, which limits the accuracy of the
 //! magnitudes. The importer computes the line spectral frequencies from the filter coefficients.

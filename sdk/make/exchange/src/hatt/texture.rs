@@ -25,7 +25,7 @@ pub struct Texture {
     pub max_speed_mm_s: Option<f64>,
     pub max_force_n: Option<f64>,
     pub nodes: Vec<Node>,
-    /// Triangles between nodes, given as indices of nodes, starting at 0. If there are none, a
+    /// Triangles between nodes, given as indices of nodes, starting at 0. If this list is empty, a
     /// player computes the triangles itself.
     pub triangles: Vec<Triangle>,
     /// Notes about the file for the user, as sentences.

@@ -7,7 +7,7 @@
 //! keyframes, and source/WaveletDecoder for wavelets. The names of perceptions come from
 //! draft-ietf-avtcore-rtp-haptics. The reader also accepts keys of earlier drafts (`tracks`,
 //! `mixing_weight`). The reader uses only the first perception that is a vibration and has a
-//! channel. From this perception, it uses only the first channel.
+//! channel. From this perception, the reader uses only the first channel.
 
 mod check;
 mod number;

@@ -6,8 +6,8 @@
 //! unchanged and plays the friction at the finger's position. The distance between pixels comes
 //! from the chunk `pHYs` (PNG, section 11.3.4.3), unless the user gives it. When an asset with this
 //! model is exported, the image has the same pixels. Any other texture is exported as one row of
-//! pixels. A finger that slides over this row at the export's speed feels waves with the same
-//! magnitudes as the texture's.
+//! pixels. If a finger slides over this row at the export's speed, the finger feels waves with the
+//! same magnitudes as the waves of the texture.
 
 mod asset;
 mod image;

@@ -3,7 +3,7 @@
 //!
 //! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The
 //! metadata are flatbuffers, which the crate `arrow-ipc` verifies and decodes. The file reader of
-//! this crate is not used, because it trusts the sizes stated in a file.
+//! `arrow-ipc` is not used, because it trusts the sizes stated in a file.
 
 use std::fmt::Display;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! The columns of an Arrow schema, and the buffers of a batch that belong to each column.
+//! The columns of an Arrow schema, and for each column its buffers in a batch.
 
 use arrow_ipc::{Endianness, Field, Precision, Type};
 

@@ -1,4 +1,5 @@
-//! Reads numbers of either byte order from files. No function trusts the sizes that a file states.
+//! Reads numbers of either byte order from files. The functions do not trust the sizes that a file
+//! states.
 
 use std::io::{self, ErrorKind, Read};
 

@@ -1,4 +1,5 @@
-//! Reader of MATLAB version 5 files (`save -v6` and `-v7`): numeric matrices, also inside structs.
+//! Reader of MATLAB version 5 files (`save -v6` and `-v7`): numeric matrices, including matrices
+//! inside structs.
 //!
 //! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements. Each
 //! element has a tag (its type and size), followed by its data. A compressed element is a zlib

@@ -1,8 +1,8 @@
 //! Parsing rows of numbers in delimited text.
 //!
 //! This module splits the cells itself and does not use the crate `csv`, for two reasons. Rows are
-//! plain numbers, so one pass can split and parse them in half the time that the crate takes.
-//! Messages also need the line numbers that an editor shows.
+//! plain numbers, so one pass can split and parse them in half the time that the crate takes. In
+//! addition, error messages need the line numbers that an editor shows.
 
 use crate::error::{Fault, Place, ReadProblem, cell};
 use crate::formats::cells::{Delimiter, split};

@@ -71,7 +71,7 @@ pub struct BakeResult {
     pub internal_rate_hz: f64,
     /// Number of coefficients of the noise filter; 0 for sinusoids.
     pub taps: usize,
-    /// Number of noise filters that the conditions mix; 0 for sinusoids.
+    /// Number of noise filters, from which the filter of each condition is mixed; 0 for sinusoids.
     pub filters: usize,
     /// Number of sinusoids; 0 for noise.
     pub tones: usize,
@@ -100,7 +100,8 @@ pub struct BakeLimits {
     /// spectra are compared. Conditions are inserted until the error is within this limit, or until
     /// there are 64 conditions.
     pub within_db: f64,
-    /// Largest number of coefficients of a noise filter, which bounds the time per sample.
+    /// Largest number of coefficients of a noise filter. A smaller number reduces the computing
+    /// time per sample.
     pub longest: usize,
     /// Whether the block plays the fluctuation in time that the asset states.
     pub fluctuation: bool,

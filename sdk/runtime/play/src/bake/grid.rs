@@ -63,7 +63,7 @@ impl Grid {
 
     /// Makes a grid of a single condition: the default condition of a representation
     /// ([`Representation::default_condition`]). If the condition does not state a speed, 80 mm/s is
-    /// used. If it does not state a force, 0.4 N is used.
+    /// used. If the condition does not state a force, 0.4 N is used.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::new`].

@@ -1,4 +1,5 @@
-//! The low-pass filter that raises the internal rate to the sample rate.
+//! The low-pass filter with which the player converts samples from the internal rate to the
+//! output's sample rate.
 
 use std::f64::consts::PI;
 

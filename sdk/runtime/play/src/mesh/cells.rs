@@ -1,5 +1,5 @@
-//! Chooses one triangulation where several are possible. Several are possible if four or more
-//! conditions lie on one circle, such as the four corners of a cell in a grid.
+//! Chooses one triangulation where several are possible. Several triangulations are possible if
+//! four or more conditions lie on one circle, such as the four corners of a cell in a grid.
 //!
 //! Four points on a circle have two Delaunay triangulations. The edge between two triangles is
 //! undecided if the two angles opposite to this edge sum to half a turn. Triangles joined by

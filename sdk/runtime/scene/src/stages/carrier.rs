@@ -1,4 +1,5 @@
-//! Amplitude modulation of a carrier (7 kHz in the paper), which prevents charge leakage.
+//! Modulates the amplitude of a carrier, to prevent charge leakage. The carrier has 7 kHz in the
+//! project's paper.
 
 use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;

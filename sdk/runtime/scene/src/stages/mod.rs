@@ -1,9 +1,9 @@
 //! The stages of a chain: one file per effect, with the condition under which the effect is needed.
 //!
-//! A constant effect needs no stage. A constant frequency factor becomes part of the resampler's
-//! ratio, and a constant level factor becomes part of the level. Linear effects of a texture run at
-//! the model's rate, before resampling. Frequency scaling is the only stage whose ratio of input
-//! samples to output samples changes.
+//! An effect that stays constant during the scene needs no stage. A constant frequency factor
+//! becomes part of the resampler's ratio, and a constant level factor becomes part of the level.
+//! Linear effects of a texture run at the model's rate, before resampling. Frequency scaling is the
+//! only stage whose ratio of input samples to output samples changes.
 //!
 //! The fluctuation of textures is needed only in a scene that switches this effect on.
 //!

@@ -1,5 +1,5 @@
-//! Converts findings, warnings, notes and spectra to JSON documents. Findings, warnings and notes
-//! state the settings that would help.
+//! Converts findings, warnings, notes and spectra to JSON documents. Each finding, warning or note
+//! names the settings that would help against its problem.
 
 use htex_author::TextureSpectrum;
 use htex_base::finding::{Finding, Hint, Notice, Severity};

@@ -1,5 +1,5 @@
-//! Decides to which addresses a program may send a request. This module checks the addresses of
-//! arguments, of names in files, and of redirects.
+//! Decides to which addresses a program may send a request. This module checks addresses from
+//! arguments, from names in files, and from redirects.
 //!
 //! The user may name any address in an argument or in an environment variable. A file such as a
 //! recipe may name only public addresses and the server that the user named. Servers may redirect

@@ -1,8 +1,9 @@
-//! Counts the requests for a file, and remembers the last request for error messages.
+//! Counts the requests for a file, and remembers how the last request ended, for use in error
+//! messages.
 //!
-//! This layer is between the crate `object_store` and the HTTP client. The crate retries requests,
-//! and its errors do not say how the last request ended. Therefore this layer remembers the end of
-//! the last request.
+//! This module is a layer between the crate `object_store` and the HTTP client. The crate retries
+//! requests, and its errors do not say how the last request ended. Therefore this layer remembers
+//! how the last request ended.
 
 use std::error::Error;
 use std::pin::Pin;

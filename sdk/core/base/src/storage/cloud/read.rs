@@ -1,4 +1,4 @@
-//! Reads whole files, and ranges of one version of a file.
+//! Reads whole files, and byte ranges that all come from the same version of a file.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};

@@ -1,4 +1,4 @@
-//! Creates the stores from environment variables.
+//! Creates the object stores that environment variables describe.
 
 use std::sync::Arc;
 

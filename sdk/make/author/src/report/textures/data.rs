@@ -36,7 +36,8 @@ pub struct Share {
     pub within_repeatability: usize,
 }
 
-/// A measure of how close the models come to the recordings: a table of textures by models.
+/// A measure of how close the models come to the recordings, shown as a table with a row for each
+/// texture and a column for each model.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measure {
     /// Caption of the table.
@@ -61,7 +62,7 @@ pub struct Texture {
     /// Speed and force as text: `"80 mm/s, 0.40 N"`.
     pub condition: String,
     /// Text that says whether a finger or a tool slid over the texture. It also says how
-    /// frequencies and level follow motions that were not recorded. May be empty.
+    /// frequencies and level are predicted for motions that were not recorded. May be empty.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,

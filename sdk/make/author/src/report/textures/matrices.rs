@@ -1,5 +1,5 @@
-//! Tables of errors. For each measure, one table of textures by models; for each texture, one table
-//! of models by bands.
+//! Tables of errors. For each measure, one table with a row for each texture and a column for each
+//! model; for each texture, one table with a row for each model and a column for each band.
 
 use super::data::{Measure, ModelResult, Texture, TextureReport};
 use crate::REPEATABILITY_BOUND;

@@ -1,5 +1,5 @@
-//! The spectra of each texture in a row. The first picture shows only the recording; each further
-//! picture shows the recording overlaid with one model.
+//! For each texture, a row of pictures with its spectra. The first picture shows only the
+//! recording; each further picture shows the recording overlaid with one model.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::report::axis::Axis;

@@ -25,7 +25,7 @@ pub const MOST_FORCE_N: f64 = 20.0;
 /// of range.
 pub const HOLD_S: f64 = 0.1;
 /// Speed (mm/s) and normal force (newtons) that are assumed where a texture does not state them.
-/// The study in the project's paper used the same speed and force.
+/// Balasubramanian & Vardar (2026) used the same speed and force in their study.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
 /// Default ceiling of a voice's level, as a multiple of the strongest recorded level.
 pub const CEILING: f64 = 4.0;

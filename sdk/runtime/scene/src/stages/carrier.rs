@@ -1,5 +1,5 @@
-//! Modulates the amplitude of a carrier, to prevent charge leakage. The carrier has 7 kHz in the
-//! project's paper.
+//! Modulates the amplitude of a carrier, to prevent charge leakage. The carrier has 7 kHz in
+//! Balasubramanian & Vardar 2026.
 
 use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;

@@ -20,6 +20,8 @@ use crate::failure::{Failure, Result};
 const TRUSTED: &str = "trusted.json";
 /// The largest list of trusted keys, bytes.
 const MOST_BYTES: u64 = 1 << 20;
+/// More than any signature has, bytes. The reader of signatures refuses what is too large.
+pub(crate) const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
 
 /// The user's folder of keys: `keys` in the folder for settings.
 pub(crate) struct KeyRing {
@@ -239,12 +241,9 @@ pub(crate) fn signer_at(
     file: &Location,
     content: impl FnOnce(&FileSignature) -> Result<SignedContent>,
 ) -> Result<Option<Signer>> {
-    let beside = Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?;
-    let storage = Storage::from_environment()?;
-    if !storage.exists(&beside)? {
+    let Some(bytes) = signature_beside(&Storage::from_environment()?, file)? else {
         return Ok(None);
-    }
-    let bytes = storage.read(&beside, MOST_BYTES)?;
+    };
     let signature = match FileSignature::from_json(&bytes) {
         Ok(signature) => signature,
         Err(error) => return Ok(Some(Signer::Invalid { problem: error.to_string() })),
@@ -262,6 +261,18 @@ pub(crate) fn plugin_content(file: &Path, signature: &FileSignature) -> Result<S
     };
     let bytes = std::fs::read(file).reading(file)?;
     Ok(SignedContent::plugin(kind, &told.name, &told.version, &bytes))
+}
+
+/// Reads the signature of a file; `None` if there is no `.sig` file beside it.
+pub(crate) fn signature_beside(storage: &Storage, file: &Location) -> Result<Option<Vec<u8>>> {
+    let signature = signature_location(file)?;
+    let is_there = storage.exists(&signature)?;
+    Ok(is_there.then(|| storage.read(&signature, MOST_SIGNATURE_BYTES)).transpose()?)
+}
+
+/// Returns the location of a file's signature, which [`signature_path`] returns for a local file.
+pub(crate) fn signature_location(file: &Location) -> Result<Location> {
+    Ok(Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?)
 }
 
 /// Returns the path of a file's signature: the file's with `.sig` behind it.

@@ -7,12 +7,9 @@ use htex_base::files::{AtFile, read_regular};
 use htex_build::registry::{Entry, PlatformFile, PluginKind};
 use htex_format::signing::{FileSignature, PublicKey, SignedContent, SignedKind};
 
-use super::ENTRIES;
+use super::{ENTRIES, MOST_ENTRY_BYTES, MOST_PLUGIN_BYTES};
 use crate::failure::Result;
-use crate::keys::signature_path;
-
-/// The largest file of a registry, bytes.
-const MOST_BYTES: u64 = 1 << 28;
+use crate::keys::{MOST_SIGNATURE_BYTES, signature_path};
 
 /// An entry's file, and the entry or what is wrong with it.
 pub(crate) type Read = (PathBuf, Result<Entry, String>);
@@ -29,7 +26,7 @@ pub(crate) fn entries(registry: &Path) -> Result<Vec<Read>> {
     }
     files.sort();
     let read = |path: PathBuf| {
-        let bytes = read_regular(&path, MOST_BYTES).reading(&path)?;
+        let bytes = read_regular(&path, MOST_ENTRY_BYTES).reading(&path)?;
         let entry = Entry::parse(&bytes).and_then(|entry| {
             let stem = path.file_stem().and_then(|stem| stem.to_str());
             if stem == Some(&*entry.id) {
@@ -88,7 +85,7 @@ fn check_file(
     file: &PlatformFile,
 ) -> Result<(), String> {
     let path = registry.join(&file.file);
-    let bytes = read_regular(&path, MOST_BYTES).map_err(|error| error.to_string())?;
+    let bytes = read_regular(&path, MOST_PLUGIN_BYTES).map_err(|error| error.to_string())?;
     if blake3::hash(&bytes).to_hex().as_str() != file.blake3 {
         return Err("its BLAKE3 is another".to_owned());
     }
@@ -98,7 +95,7 @@ fn check_file(
     if PluginKind::of(&bytes) != Some(entry.kind) {
         return Err(format!("it is no {}", entry.kind.name()));
     }
-    let signature = read_regular(&signature_path(&path), MOST_BYTES)
+    let signature = read_regular(&signature_path(&path), MOST_SIGNATURE_BYTES)
         .map_err(|error| format!("its signature: {error}"))?;
     let signature = FileSignature::from_json(&signature).map_err(|error| error.to_string())?;
     let kind = match entry.kind {

@@ -9,15 +9,14 @@ use htex_base::storage::{Location, Storage};
 use htex_build::registry::{Entry, PlatformFile};
 
 use crate::failure::{Failure, Result};
+use crate::keys::{MOST_SIGNATURE_BYTES, signature_location};
 
 /// The folder of a registry with the entries.
 pub(crate) const ENTRIES: &str = "plugins";
 /// The largest entry, bytes.
 const MOST_ENTRY_BYTES: u64 = 1 << 20;
 /// The largest plugin, bytes.
-const MOST_PLUGIN_BYTES: u64 = 1 << 28;
-/// Larger than any signature; the reader of signatures refuses what is too large.
-const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
+pub(crate) const MOST_PLUGIN_BYTES: u64 = 1 << 28;
 
 /// A registry at a path or a URI.
 pub(crate) struct PluginRegistry {
@@ -67,11 +66,7 @@ impl PluginRegistry {
         } else {
             self.place.inside(text)
         };
-        let signature = if text.contains("://") {
-            Location::parse(format!("{text}.sig").as_ref())?
-        } else {
-            self.place.inside(&format!("{text}.sig"))
-        };
+        let signature = signature_location(&location)?;
         Ok(Fetched {
             file: storage.read(&location, MOST_PLUGIN_BYTES)?,
             signature: storage.read(&signature, MOST_SIGNATURE_BYTES)?,

@@ -49,11 +49,19 @@ async function writeServiceWorker(folder) {
   await writeFile(path.join(folder, "sw.js"), filled);
 }
 
+/** The module of the player and the shelf load while the script does, which asks for them when it runs. */
+async function preloads(folder) {
+  const names = (await files(folder)).filter((name) => /assets\/(htex-(?!author|import).*\.wasm|shelf-.*\.htexlib)$/.test(name));
+  if (names.length !== 2) throw new Error(`the page needs one module of the player and one shelf: ${names.join(", ")}`);
+  return names.map((name) => `  <link rel="preload" href="./${name}" as="fetch" crossorigin />\n  `).join("");
+}
+
 async function buildStatic() {
   const folder = path.join(out, "static");
   await build({ ...common, mode: "static", build: { outDir: folder, emptyOutDir: true, assetsInlineLimit: 0, modulePreload: { polyfill: false } } });
   const index = path.join(folder, "index.html");
-  await writeFile(index, withPolicy(await readFile(index, "utf8"), STATIC_POLICY));
+  const html = await readFile(index, "utf8");
+  await writeFile(index, withPolicy(html.replace("</head>", `${await preloads(folder)}</head>`), STATIC_POLICY));
   await writeServiceWorker(folder);
 }
 

@@ -14,7 +14,8 @@ use tempfile::TempDir;
 use crate::failure::{Failure, Result};
 use crate::installed::Identity;
 use crate::invocation;
-use crate::keys::{KeyRing, Signer};
+use crate::keys::{KeyRing, Signer, signature_beside};
+use crate::plugin_registry::MOST_PLUGIN_BYTES;
 
 /// A plugin that may be installed, in a folder of its own.
 pub(super) struct Candidate {
@@ -50,20 +51,10 @@ pub(super) fn candidate_at(text: &str) -> Result<Candidate> {
         )));
     }
     let storage = Storage::from_environment()?;
-    let bytes = storage.read(&location, MOST_BYTES)?;
-    let beside = Location::parse(format!("{text}.sig").as_ref())?;
-    let signature = if storage.exists(&beside)? {
-        Some(storage.read(&beside, MOST_SIGNATURE_BYTES)?)
-    } else {
-        None
-    };
+    let bytes = storage.read(&location, MOST_PLUGIN_BYTES)?;
+    let signature = signature_beside(&storage, &location)?;
     Candidate::new(bytes, signature, text)
 }
-
-/// The largest plugin, bytes.
-const MOST_BYTES: u64 = 1 << 28;
-/// Larger than any signature; the reader of signatures refuses what is too large.
-const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
 
 impl Candidate {
     pub(super) fn new(bytes: Vec<u8>, signature: Option<Vec<u8>>, shown: &str) -> Result<Self> {

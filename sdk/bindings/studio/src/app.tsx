@@ -8,27 +8,22 @@ import { Dock, showPad } from "./parts/dock.tsx";
 import { Icon, type IconName } from "./parts/icons.tsx";
 import { Opening } from "./parts/opening.tsx";
 import { Top } from "./parts/top.tsx";
-import { Compare } from "./screens/compare.tsx";
-import { Give } from "./screens/give.tsx";
-import { Mix } from "./screens/mix.tsx";
-import { Shape } from "./screens/shape.tsx";
+import { SCRIPTS } from "./screens/scripts.ts";
 import { Shelf } from "./screens/shelf.tsx";
-import { Vary } from "./screens/vary.tsx";
 import { spoken } from "./spoken.ts";
 import { fail, notice, screen, type Screen } from "./state.ts";
 import { troubleOf } from "./trouble.ts";
 
-/** The screen of recordings comes when it is first shown: what draws its curves is a third of the page. */
-const Record = lazy(() => import("./screens/record.tsx").then(({ Record: shown }) => ({ default: shown })));
+type Shown = () => preact.JSX.Element;
 
-const SCREENS: { id: Screen; name: string; icon: IconName; show: () => preact.JSX.Element }[] = [
+const SCREENS: { id: Screen; name: string; icon: IconName; show: Shown }[] = [
   { id: "shelf", name: "Shelf", icon: "shelf", show: Shelf },
-  { id: "shape", name: "Shape", icon: "shape", show: Shape },
-  { id: "mix", name: "Mix", icon: "mix", show: Mix },
-  { id: "vary", name: "Vary", icon: "vary", show: Vary },
-  { id: "compare", name: "Compare", icon: "compare", show: Compare },
-  { id: "record", name: "Record", icon: "record", show: Record },
-  { id: "give", name: "Save", icon: "give", show: Give },
+  { id: "shape", name: "Shape", icon: "shape", show: lazy(SCRIPTS.shape) },
+  { id: "mix", name: "Mix", icon: "mix", show: lazy(SCRIPTS.mix) },
+  { id: "vary", name: "Vary", icon: "vary", show: lazy(SCRIPTS.vary) },
+  { id: "compare", name: "Compare", icon: "compare", show: lazy(SCRIPTS.compare) },
+  { id: "record", name: "Record", icon: "record", show: lazy(SCRIPTS.record) },
+  { id: "give", name: "Save", icon: "give", show: lazy(SCRIPTS.give) },
 ];
 
 function Tabs() {

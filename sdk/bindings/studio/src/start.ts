@@ -14,6 +14,7 @@ import { handles, moveHandle, setMacro } from "./shaping/session.ts";
 import { setPlayer } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
 import { begin, depth, fail, notice, present, redo, say, screen, texture, undo, type Notice } from "./state.ts";
+import { loadScreens } from "./screens/scripts.ts";
 import { reference } from "./reference.ts";
 import { inTime, refusal } from "./store.ts";
 import { keep, keepWork, suggest } from "./work.ts";
@@ -124,6 +125,7 @@ export function start() {
       showFirst();
       document.documentElement.dataset["ready"] = "yes";
       performance.mark("ready");
+      await loadScreens();
     })
     .catch(fail);
   // `htex studio` serves at a name of `.localhost`, and refuses the worker: it is there without a network anyway.

@@ -207,6 +207,10 @@ test("500 random edits that are undone give the first bytes", async () => {
 test("the folder works without a network once it was opened", async () => {
   const own = await serve();
   const page = await openStudio(browser, own.address);
+  // The module and the shelf, too, which load before the script asks for them.
+  const assets = await page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name).filter((name) => name.includes("/assets/")));
+  assert.ok(assets.some((name) => name.endsWith(".wasm")) && assets.some((name) => name.endsWith(".htexlib")), assets.join());
+  assert.equal(new Set(assets).size, assets.length, assets.join());
   await page.evaluate(() => navigator.serviceWorker.ready);
   await until(page, async () => (await caches.keys()).length > 0 && navigator.serviceWorker.controller !== null);
   await own.close();

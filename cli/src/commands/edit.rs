@@ -40,8 +40,8 @@ pub(crate) struct Edit {
     #[command(flatten)]
     metadata: Metadata,
 
-    /// Set the extension with this name to the JSON in FILE. Without FILE, remove the extension. May
-    /// be given several times
+    /// Set the extension with this name to the JSON in FILE. Without FILE, remove the extension.
+    /// May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension: Vec<String>,
 

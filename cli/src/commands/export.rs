@@ -30,7 +30,7 @@ use crate::scene_sound::{Scene, is_scene};
 /// command prints the difference between the file and the asset. To measure this difference, the
 /// command reads the written file again, simulates how the actuator plays the file, and compares
 /// the result with the asset's own samples. The command also prints the licence and the author that
-/// the file states.
+/// the written file states.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The asset or the scene to export. Unlike an asset, a scene also contains the motion of the
@@ -48,9 +48,9 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write; for several textures, the folder to write to. With --to android, the command writes Kotlin if the name ends in .kt, and
-    /// otherwise JSON. With --to gltf, the command writes JSON if the name ends in .gltf, and
-    /// otherwise the binary form (.glb)
+    /// The file to write; for several textures, the folder to write to. With --to android, the
+    /// command writes Kotlin if the name ends in .kt, and otherwise JSON. With --to gltf, the
+    /// command writes JSON if the name ends in .gltf, and otherwise the binary form (.glb)
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 

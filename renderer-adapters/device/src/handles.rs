@@ -1,8 +1,8 @@
 //! The open devices of an adapter, addressed by handles. The number of a closed handle is never
 //! used again.
 //!
-//! A lock protects each open device, because opening and writing may block. The voices of
-//! a model must not block, so they use slots and generations instead (`sdk/core/model/src/voices.rs`).
+//! A lock protects each open device, because opening and writing may block. The voices of a model
+//! must not block, so they use slots and generations instead (`sdk/core/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -16,8 +16,8 @@ const FOLDER: &str = "htex/devices";
 
 /// Where to search for native libraries of devices. The search has this order: `files`, `dirs`, the
 /// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, the folders of all
-/// users, and the adapters built into the program. If two adapters of one direction have the same id, the adapter that is
-/// found first is used.
+/// users, and the adapters built into the program. If two adapters of one direction have the same
+/// id, the adapter that is found first is used.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// Library files to load. A file that cannot be loaded is an error.

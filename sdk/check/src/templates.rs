@@ -1,5 +1,5 @@
-//! The project templates of `htex plugin new` and `htex device new`. The files of a template contain
-//! placeholders (`templates/README.md`), which [`Template::files`] fills in.
+//! The project templates of `htex plugin new` and `htex device new`. The files of a template
+//! contain placeholders (`templates/README.md`), which [`Template::files`] fills in.
 
 /// A project template for a model or a device in one programming language. The project builds and
 /// passes its checker.

@@ -31,8 +31,8 @@ const MOST_LEFT_OUT: usize = 1000;
 /// Writes the web page (DIR/index.html), and a copy of the library beside it. Each texture has its
 /// own web address. The page reads only the parts of the library that it needs (HTTP range
 /// requests). The web server must support such requests, and nearly all web servers do. If the
-/// library has at most 2 MiB, the page also contains the library, so you can open the page as a
-/// local file, without a web server.
+/// library is at most 2 MiB in size, the page also contains the library, so you can open the page
+/// as a local file, without a web server.
 ///
 /// The command fills a template of the page with the data of the library. `cargo xtask studio --out
 /// DIR` builds this template.
@@ -51,8 +51,8 @@ pub(crate) struct Catalogue {
     #[arg(long, value_name = "URL")]
     url: Option<String>,
 
-    /// Report of the build that made the library (build-report.json). The catalogue gets a page with
-    /// the textures that the build left out, and with the findings of recordings
+    /// Report of the build that made the library (build-report.json). The catalogue gets a page
+    /// with the textures that the build left out, and with the findings of recordings
     #[arg(long, value_name = "JSON", value_parser = located::RECORDING)]
     report: Option<PathBuf>,
 

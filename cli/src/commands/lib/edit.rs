@@ -24,8 +24,8 @@ use crate::progress::bar;
 /// then changes metadata. All other textures stay the same, byte for byte. The result is the same
 /// library that `htex lib pack` would write from the resulting textures.
 ///
-/// GLOB is a name, or a pattern: `*` matches any text inside a part of a name, and `**` also matches
-/// across parts.
+/// GLOB is a name, or a pattern: `*` matches any text inside a part of a name, and `**` also
+/// matches across parts.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The library

@@ -41,7 +41,8 @@ pub(crate) struct ExportAll {
     output: PathBuf,
 
     /// Export only textures with this property: name, tag, model, contact, license, author or
-    /// quantity, e.g. tag=rough. May be given several times; then a texture must have all properties
+    /// quantity, e.g. tag=rough. May be given several times; then a texture must have all
+    /// properties
     #[arg(long = "where", value_name = "FIELD=GLOB")]
     filters: Vec<Filter>,
 

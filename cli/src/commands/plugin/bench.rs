@@ -15,7 +15,8 @@ use crate::plugins::{PluginArgs, way};
 /// Times each model at the model's own sample rate, in every form that htex finds (built in, native
 /// library, WASM module). The runs of all models are interleaved, so that other load on the machine
 /// affects all models equally. A WASM module is timed twice: once with the limits that are set (by
-/// default, on the time of a call), and once with counted instructions, as with --wasm-limit fuel=N.
+/// default, on the time of a call), and once with counted instructions, as with --wasm-limit
+/// fuel=N.
 #[derive(Args)]
 pub(crate) struct Bench {
     /// Models by short name, id or file [default: all built-in models]

@@ -14,7 +14,8 @@ use crate::plugins::PluginArgs;
 ///
 /// htex searches for models in this order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH,
 /// the user's folder (`~/.local/share/htex/plugins`), the folders of all users
-/// (`/usr/local/share/htex/plugins`, `/usr/share/htex/plugins`), the models built into this program.
+/// (`/usr/local/share/htex/plugins`, `/usr/share/htex/plugins`), the models built into this
+/// program.
 ///
 /// If several models have the same id, htex uses the first of these models that --plugin names. If
 /// --plugin names none of them, htex goes through the places in the order above. The first place

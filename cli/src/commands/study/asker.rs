@@ -42,8 +42,8 @@ pub(super) struct AskingArgs {
     #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
     touch_mm_per_px: f64,
 
-    /// With --motion page: normal force of the finger, N. The page cannot measure the force, so htex
-    /// assumes this value
+    /// With --motion page: normal force of the finger, N. The page cannot measure the force, so
+    /// htex assumes this value
     #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
     touch_force: f64,
 }

@@ -231,8 +231,9 @@ impl Player {
         self.why
     }
 
-    /// Subtracts `by` from all times of the player. The model checker calls this function so that
-    /// its clock stays at a fixed time. States that differ only in their time then compare equal.
+    /// Subtracts `by` from all times of the player. At each step, the model checker calls this
+    /// function instead of advancing the clock. States that differ only in their time then compare
+    /// equal.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {

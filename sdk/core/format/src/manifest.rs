@@ -147,8 +147,8 @@ impl Manifest {
         VERSIONS[usize::from(since_1_1)].to_owned()
     }
 
-    /// Returns the held-out error at a condition of a representation; `None` if the manifest does not
-    /// state it.
+    /// Returns the held-out error at a condition of a representation; `None` if the manifest does
+    /// not state it.
     pub fn held_out(&self, at: &AtCondition) -> Option<HeldOut> {
         let held_out_error_db = at.left_out?.0.get(Measure::ThirdOctave)?;
         // The repeatability is that of the whole recording. Its halves differ by √2 times as much.
@@ -158,7 +158,8 @@ impl Manifest {
         Some(HeldOut { held_out_error_db, held_out_error: second.map(|db| held_out_error_db / db) })
     }
 
-    /// Sets extensions by their names. The value `null` removes an extension. Other extensions stay.
+    /// Sets extensions by their names. The value `null` removes an extension. Other extensions
+    /// stay.
     ///
     /// # Errors
     ///

@@ -44,8 +44,8 @@ pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     Some(manifest)
 }
 
-/// Returns the bytes of an asset's manifest, even if the manifest is not valid. Returns `None` if the
-/// manifest cannot be unpacked.
+/// Returns the bytes of an asset's manifest, even if the manifest is not valid. Returns `None` if
+/// the manifest cannot be unpacked.
 pub fn manifest_bytes(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;

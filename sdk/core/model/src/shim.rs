@@ -203,7 +203,7 @@ impl<M: Model> State<M> {
     /// See [`crate::abi::VoiceRenderFn`].
     ///
     /// # Safety
-    /// During the call no other thread uses or frees this voice.
+    /// During the call, no other thread may use or free this voice.
     pub unsafe fn voice_render(&self, handle: i64, out: Output<'_, f32>) -> i64 {
         guarded(|| {
             let out = out.get("out")?;
@@ -217,7 +217,7 @@ impl<M: Model> State<M> {
     /// See [`crate::voices_1::VoicesRenderFn`].
     ///
     /// # Safety
-    /// During the call no other thread uses or frees these voices.
+    /// During the call, no other thread may use or free these voices.
     pub unsafe fn voices_render(
         &self,
         handles: Input<'_, i64>,
@@ -244,7 +244,7 @@ impl<M: Model> State<M> {
     /// See [`crate::abi::VoiceRetuneFn`].
     ///
     /// # Safety
-    /// During the call no other thread uses or frees this voice.
+    /// During the call, no other thread may use or free this voice.
     pub unsafe fn voice_retune(&self, handle: i64, parameters: Input<'_, f64>) -> i64 {
         guarded(|| {
             let values = self.values(parameters)?;
@@ -268,7 +268,7 @@ impl<M: Model<Voice: MotionVoice>> State<M> {
     /// See [`crate::motion_1::MotionSetFn`].
     ///
     /// # Safety
-    /// During the call no other thread uses or frees this voice.
+    /// During the call, no other thread may use or free this voice.
     pub unsafe fn motion_set(&self, handle: i64, motion: Motion) -> i64 {
         guarded(|| {
             motion.check()?;

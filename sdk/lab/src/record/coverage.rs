@@ -45,9 +45,9 @@ impl Requirements {
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
     /// Returns the default of [`Self::sweeps`]. The result is half the number of strokes that the
-    /// target on the screen makes in a take of this length (seconds). The first and the last stroke
-    /// do not count, because the ends of the take cut them off. Without a target speed the result
-    /// is 0, because the screen then shows no strokes.
+    /// target on the screen makes in a take of this length (seconds). Two strokes do not count,
+    /// because the ends of the take can cut off the first and the last sweep of the finger. Without
+    /// a target speed the result is 0, because the screen then shows no strokes.
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);

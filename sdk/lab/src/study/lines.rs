@@ -232,8 +232,8 @@ pub struct Answer {
     /// Time of the answer, milliseconds since 1970 in UTC. If the clock is simulated, the
     /// milliseconds count from the start of the session.
     pub at_ms: u64,
-    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without gain
-    /// matching.
+    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without
+    /// gain matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
     /// Drive of the display at which the stimulus was played, volts.
@@ -347,8 +347,8 @@ pub struct Stop {
     pub texture: String,
     pub model: String,
     pub reason: StopReason,
-    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without gain
-    /// matching.
+    /// Gain with which the stimulus was played, decibels relative to the maximum. Absent without
+    /// gain matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
     /// Drive of the display, volts.

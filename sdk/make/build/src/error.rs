@@ -28,7 +28,8 @@ pub enum BuildError {
     /// Another build is using the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
-    /// The library would lose textures, and the options or the recipe forbid it. Nothing was changed.
+    /// The library would lose textures, and the options or the recipe forbid it. Nothing was
+    /// changed.
     #[error(
         "the library would lose {} textures ({}); bring back their recordings, or allow removals",
         .textures.len(), crate::named_briefly(.textures)

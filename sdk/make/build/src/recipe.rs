@@ -65,8 +65,8 @@ pub struct LibraryPart {
     /// name them with `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
-    /// What happens to textures of the existing library that the recipe no longer makes, e.g. because
-    /// their recordings are archived.
+    /// What happens to textures of the existing library that the recipe no longer makes, e.g.
+    /// because their recordings are archived.
     #[serde(default)]
     pub missing: MissingTextures,
     /// Largest number of textures that the library may lose. If the library would lose more

@@ -213,8 +213,8 @@ impl Path {
     /// Makes the path of a finger that moves at a constant speed (mm/s) and force (N). If one of
     /// the values is missing, it comes from the default condition of the representation with this
     /// model. If the default condition does not state the value either, the value is the speed or
-    /// force of the study of Balasubramanian & Vardar 2026 (80 mm/s, 0.4 N). If both values are missing, the
-    /// finger moves at the asset's default condition.
+    /// force of the study of Balasubramanian & Vardar 2026 (80 mm/s, 0.4 N). If both values are
+    /// missing, the finger moves at the asset's default condition.
     ///
     /// # Errors
     /// When the asset has no representation with this model.

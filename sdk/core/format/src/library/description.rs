@@ -2,9 +2,10 @@
 
 use crate::library::coarse_spectrum::CoarseSpectrum;
 
-/// Values for searches that the writer of a library computes for a texture, in addition to the
-/// facts in the manifest. Only a program with the texture's model can compute these values, so
-/// programs that only read and validate libraries do not check them.
+/// Values that the writer of a library computes for a texture, so that programs can search for the
+/// texture. The library stores them in addition to the facts in the manifest. Only a program with
+/// the texture's model can compute these values, so programs that only read and validate libraries
+/// do not check them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Description {
     /// The texture's spectrum at its default condition; `None` if the texture is silent, or if the

@@ -1,5 +1,5 @@
-//! The functions that JavaScript provides (`sdk/bindings/web/src/guests.js`) to run the modules of models as
-//! *guests*.
+//! The functions that JavaScript provides (`sdk/bindings/web/src/guests.js`) to run the modules of
+//! models as *guests*.
 #![allow(unsafe_code)]
 
 mod raw {

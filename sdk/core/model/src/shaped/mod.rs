@@ -184,8 +184,8 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 ///
 /// # How it is used
 ///
-/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`magnitude_at`](Self::magnitude_at) by
-///   [`level`](Self::level).
+/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides
+///   [`magnitude_at`](Self::magnitude_at) by [`level`](Self::level).
 /// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `magnitude_at`. It
 ///   then calls [`prepare`](Self::prepare) once, with the frequencies of the noise. `new` and
 ///   `prepare` may allocate.

@@ -30,7 +30,7 @@ pub(crate) struct PluginArgs {
     /// voices [256], table-elements [10000], module-mib (size of the module) [16], fuel
     /// (instructions in one call) [no limit], compile-ms (time to compile the module) [5000],
     /// compile-mib (memory to compile the module) [512]. Limits on the sum over all models of one
-    /// asset: asset-ms (time for compiling and for all calls except the calls of voices) [10000],
+    /// asset: asset-ms (time for compiling and for all calls except calls to voices) [10000],
     /// asset-mib (memory) [512], asset-instances [512]. Limits on the sum over all models in one
     /// command: all-ms [30000], all-mib [1024], all-instances [2048]
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]

@@ -33,7 +33,8 @@ use crate::wasm_limits::WasmLimit;
 /// by URI.
 ///
 /// Finished fits stay in DIR/.htex-build. If a build was killed, run the same command again: the
-/// new build continues from these fits. A repeated build fits only the textures that have changed.
+/// new build reuses the fits that the killed build had finished. A repeated build fits only the
+/// textures that have changed.
 ///
 /// Exit status: 0 if every texture was made; 1 if no texture was made or the build failed; 2 for
 /// wrong usage; 3 if some textures were made and others were left out.

@@ -41,7 +41,7 @@ pub(crate) struct Spectrum {
     json: bool,
 }
 
-/// Options that select the model, the speed and the force at which to play an asset.
+/// Options that select how to play an asset: with which model, and at which speed and force.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
     /// Which of the asset's models to play, by short name or id [default: the model with the

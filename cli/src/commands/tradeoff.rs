@@ -58,9 +58,9 @@ pub(crate) struct Tradeoff {
     ///
     /// held-out: htex fits a model to every second block of a recording, and plays the model. It
     /// then compares the played samples with the other blocks, in third octaves. A held-out error
-    /// of 1 means that the model is as close to the recording as a second recording of the surface.
-    /// The other errors compare a model with the recording to which the model was fitted [default:
-    /// held-out; third-octave if a recording is too short]
+    /// of 1 means that the model differs from the recording as much as a second recording of the
+    /// same surface does. The other errors compare a model with the recording to which the model
+    /// was fitted [default: held-out; third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 

@@ -42,7 +42,7 @@ pub(crate) struct Validate {
     #[arg(required = true, value_parser = located::FILES)]
     files: Vec<PathBuf>,
 
-    /// In assets, check the extension with this name against the JSON Schema in FILE (draft
+    /// Check the extension com.vendor.NAME/1 of assets against the JSON Schema in FILE (draft
     /// 2020-12). htex does not download schemas to which FILE refers. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,

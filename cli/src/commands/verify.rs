@@ -18,11 +18,11 @@ use crate::output::{print, print_json};
 
 /// Check who signed files
 ///
-/// The command reads FILE and FILE.sig. The exit status is 0 if each file has a valid signature of
-/// a key that you trust (`htex key trust`), and 1 otherwise. With --signed-by, each file must have
-/// a valid signature of the given key. A texture of a library (`cloth.htexlib#oak`) counts as
-/// signed if the library is signed. To check such a texture, the command reads only the library's
-/// index and this texture. No plugin is loaded.
+/// The command reads FILE and FILE.sig. The exit status is 0 if each file has a valid signature
+/// made with a key that you trust (`htex key trust`), and 1 otherwise. With --signed-by, each file
+/// must have a valid signature made with the given key. A texture of a library
+/// (`cloth.htexlib#oak`) counts as signed if the library is signed. To check such a texture, the
+/// command reads only the library's index and this texture. No plugin is loaded.
 #[derive(Args)]
 pub(crate) struct Verify {
     /// Assets, libraries, textures of libraries and plugins, by path or URI

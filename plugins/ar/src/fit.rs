@@ -2,8 +2,8 @@
 //!
 //! The fit makes no resonance narrower than a bin, because the spectrum cannot show such a
 //! resonance. Without this limit, the Yule–Walker method would find a narrower resonance for a
-//! tone. A voice with such a resonance would take hours to reach its level. Its spectrum at the
-//! bins would be wrong by tens of decibels.
+//! tone. A voice with such a resonance would take hours to reach its level. The voice's spectrum at
+//! the bins would be wrong by tens of decibels.
 
 use alloc::vec::Vec;
 

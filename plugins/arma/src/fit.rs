@@ -3,11 +3,12 @@
 //! Poles and zeros depend on each other, so the fit estimates them alternately, in several rounds.
 //! For the poles, the fit divides the spectrum by the spectrum of the zeros and applies the
 //! Yule–Walker method. For the zeros, the fit inverts the spectrum, multiplies it by the spectrum
-//! of the poles, and again applies the Yule–Walker method. The fit computes the Itakura–Saito
-//! distance of each round at the level that minimises this distance. The fit keeps the round with
-//! the smallest distance. If the recording is Gaussian noise, the parameters of this round have the
-//! largest likelihood of all rounds. No resonance is narrower than a bin, because the spectrum
-//! cannot show such a resonance.
+//! of the poles, and again applies the Yule–Walker method. After each round, the fit computes the
+//! Itakura–Saito distance between the recorded spectrum and the filter's spectrum, at the level
+//! that minimises this distance. The fit keeps the round with the smallest distance. If the
+//! recording is Gaussian noise, the parameters of this round have the largest likelihood of all
+//! rounds. The fit makes no resonance narrower than a bin, because the spectrum cannot show such a
+//! resonance.
 
 use alloc::vec::Vec;
 

@@ -1,7 +1,7 @@
 //! ARMA model: white noise filtered by a filter with poles and zeros, as in the Penn Haptic Texture
 //! Toolkit (Culbertson et al. 2014).
 //!
-//! Files store the polynomials of poles and zeros as line spectral frequencies, because
+//! Files store the polynomials of poles and zeros as line spectral frequencies. The reason is that
 //! interpolation computes weighted means, and every weighted mean of line spectral frequencies
 //! describes a stable filter. Line spectral frequencies cannot store zeros outside the unit circle.
 //! Such zeros are not needed, because noise has the same spectrum if they are replaced by their

@@ -1,7 +1,8 @@
 //! The voice, which sends white noise through the zeros, then through the poles.
 //!
 //! When parameters change, the coefficients of the zeros and the reflection coefficients of the
-//! poles move linearly to their new values. Therefore, every filter during the change is stable.
+//! poles move linearly to their new values. During the change, the reflection coefficients stay
+//! inside (-1, 1), so every filter is stable.
 
 use alloc::boxed::Box;
 

@@ -5,9 +5,9 @@
 //! regresses ratings on energy differences in such bands (section "Linear regression"). The r² of
 //! this regression, which the paper calls low, does not increase with more than nine bands. Thirty
 //! bands keep a spectrum within about 0.3 dB of the recording in third-octave bands. Files do not
-//! store the energies, but a curve with these energies. The curve is in decibels, and it is
-//! piecewise linear. Its frequency axis is the axis on which the bands are equally spaced. Its
-//! knots are at the bands' apexes.
+//! store the energies themselves, but a curve from which the bands get these energies. The curve is
+//! in decibels, and it is piecewise linear. Its frequency axis is the axis on which the bands are
+//! equally spaced. Its knots are at the bands' apexes.
 //!
 //! By default, there are thirty knots from edge to edge of the asset's frequency band. The levels
 //! of the knots are in steps of 1 dB, and the differences of levels are stored in a Rice code. The
@@ -22,8 +22,8 @@
 //! | 30 from edge to edge, on the axis ln(f + 20 Hz) | Rice code, 21 bytes in all | 0.3 dB |
 //!
 //! On the axis ln(f + 20 Hz), even the knots at low frequencies are at least one bin apart. In the
-//! Rice code, a band needs only two thirds of a byte. In total, entropy codes with longer tails
-//! need one byte more, and steps of 0.5 dB need two or three bytes more.
+//! Rice code, a band needs only two thirds of a byte. For all bands together, entropy codes with
+//! longer tails need one byte more, and steps of 0.5 dB need two or three bytes more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -70,10 +70,10 @@ const MAX_STEPS: f64 = 255.0;
 /// Resolution with which files store the step, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest level difference, dB, between the loudest band and another band, and between the highest
-/// knot and another knot. A band without energy gets a level that is this far below the loudest
-/// band. The measure of band errors has the same limit, because it adds 1e-12 of the largest energy
-/// to every band, and 1e-12 is this limit as a ratio of energies.
+/// Largest level difference in dB, both between the loudest band and any other band, and between
+/// the highest knot and any other knot. A band without energy gets a level that is this far below
+/// the loudest band. The measure of band errors has the same limit, because it adds 1e-12 of the
+/// largest energy to every band: this is the limit, expressed as a ratio of energies.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {

@@ -1,5 +1,5 @@
-//! Fits a map with one row. At the speed of the recording, the waves in this row have the
-//! recording's spectrum.
+//! Fits a map that has a single row. If this row is played at the speed of the recording, its waves
+//! have the recording's spectrum.
 
 use alloc::vec::Vec;
 

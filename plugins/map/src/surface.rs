@@ -1,4 +1,4 @@
-//! A map in the form that a voice renders, including the friction between pixels.
+//! A map in the form that a voice renders, with interpolation of the friction between pixels.
 
 use alloc::vec::Vec;
 

@@ -24,13 +24,13 @@
 //! If all peaks are on one side of the band, the density that fits the peaks best has a spike at
 //! frequencies without a peak. This spike is many decibels too high. Therefore, if the maximum of a
 //! fit to peaks is higher than twice the largest bin, the plugin makes a second fit, to peaks and
-//! bins. To compare the two fits, the plugin gives each fit the scale at which its distance is
-//! smallest. The result is the fit with the smaller distance, in decibels, to the peaks and bins.
-//! The option `refit=never` keeps the first fit.
+//! bins. To compare the two fits, the plugin scales each of them so that its distance to the peaks
+//! and bins is as small as possible. The result is the fit with the smaller distance, in decibels,
+//! to the peaks and bins. The option `refit=never` keeps the first fit.
 //!
-//! With `error=decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen
-//! such that the density has the energy of the points. If the density is still higher than twice
-//! the largest bin, its level is reduced until its maximum equals the largest bin.
+//! With `error=decibel`, the fit has a closed form ([`crate::decibels`]), and its level gives the
+//! density the same energy as the fitted points. If the density is still higher than twice the
+//! largest bin, its level is reduced until its maximum equals the largest bin.
 
 use alloc::vec::Vec;
 

@@ -3,10 +3,10 @@
 //!
 //! By default, the frequency of a sinusoid is interpolated between the bins
 //! ([`htex_dsp::interpolated_peaks`]). In this case, a tone at any multiple of 0.5 Hz from 60 to
-//! 900 Hz is stored with an error of less than 0.001 Hz and 0.001 dB. Files round other frequencies
-//! to 1/32 Hz. With `frequency=bin`, as in the paper, each sinusoid is at a bin. In this case, the
-//! errors are up to 2.5 Hz and 1.4 dB, and the sound repeats every 0.2 s, because all frequencies
-//! are multiples of 5 Hz.
+//! 900 Hz is stored with an error of less than 0.001 Hz and 0.001 dB. Other frequencies are rounded
+//! to a multiple of 1/32 Hz when they are stored in a file. With `frequency=bin`, as in the paper,
+//! each sinusoid has the frequency of a bin. In this case, the errors are up to 2.5 Hz and 1.4 dB,
+//! and the sound repeats every 0.2 s, because all frequencies are multiples of 5 Hz.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

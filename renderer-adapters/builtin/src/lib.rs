@@ -79,8 +79,8 @@ pub const SOUND: Optional = Optional {
 };
 
 impl Optional {
-    /// Returns the optional device with this name (short name or id) if this program was built
-    /// without it.
+    /// Returns the optional device with this name (short name or id), but only if this program was
+    /// built without it.
     pub fn left_out(name: &str) -> Option<Self> {
         let named = |one: &Self| [one.id, one.short_name()].contains(&name);
         [SOUND].into_iter().find(|one| !one.is_built && named(one))

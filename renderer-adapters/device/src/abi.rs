@@ -9,13 +9,14 @@
 //! returns the length of the whole text in bytes. If the buffer was too small, the caller calls the
 //! function again with a larger buffer.
 //!
-//! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order of the
-//! descriptor. The host passes every setting, after it has applied the profile and the defaults.
+//! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order in
+//! which the descriptor lists them. The host passes every setting, after it has applied the profile
+//! and the defaults.
 //!
 //! Samples of an output are `f32`. Samples of an input are `f64`. Samples of an input are
 //! interleaved: a frame consists of one sample of each channel, and the frames follow one another.
 
-/// Major version: a host loads only devices of its own major version.
+/// Major version: a host loads only devices with the same major version as the host.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor version: increases when functions are added at the end of the table.
 pub const ABI_MINOR: u32 = 0;

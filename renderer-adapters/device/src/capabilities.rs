@@ -9,7 +9,7 @@ use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 /// carrier could alias to a slow or direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
-/// Capabilities of an output. A native library passes them to the host as JSON.
+/// Capabilities of an output. A native library passes its capabilities to the host as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "schemars",

@@ -22,9 +22,9 @@ pub struct Descriptor {
     pub summary: String,
     /// Whether the adapter's devices play or record.
     pub direction: Direction,
-    /// Name of the setting that selects one of the adapter's devices. On a command line,
-    /// `NAME:TARGET` gives that setting the value `TARGET`. The descriptor of an input must name
-    /// such a setting.
+    /// Name of the setting that selects one of the adapter's devices. On a command line, the user
+    /// writes `NAME:TARGET`: the adapter `NAME`, and the value `TARGET` of this setting. The
+    /// descriptor of an input must name such a setting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<String>,
     /// Settings, each with its default.
@@ -98,8 +98,8 @@ pub struct Setting {
     pub description: String,
 }
 
-/// How a scene may change a setting. A setting that describes the hardware can be set only by the
-/// user, directly or by choosing a profile.
+/// How a scene may change a setting. Only the user can set a setting that describes the hardware,
+/// either directly or by choosing a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -108,7 +108,7 @@ pub enum FromScene {
     #[default]
     Any,
     /// The scene may lower the user's value or the default value, e.g. of a limit or a buffer. The
-    /// smallest of the given numbers applies.
+    /// smallest of the numbers from the scene, the user (or the default) and the profile applies.
     Less,
     /// The scene may raise the user's value or the default value, e.g. of a ramp.
     More,
@@ -146,7 +146,7 @@ pub enum SettingKind {
 }
 
 impl SettingKind {
-    /// Creates the kind of a setting that allows only the listed values.
+    /// Creates a setting kind that allows only the listed values.
     pub fn choice(values: &[&str]) -> Self {
         Self::Choice { values: values.iter().map(ToString::to_string).collect() }
     }
@@ -169,7 +169,7 @@ pub struct Profile {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
-    /// Name of the device, which is also the value of the setting that selects it.
+    /// Name of the device, and at the same time the value of the setting that selects the device.
     pub name: String,
     /// Name of the setting that selects the device.
     pub setting: String,
@@ -247,7 +247,7 @@ impl Descriptor {
 }
 
 impl Setting {
-    /// Creates a setting without a default, which a scene may change.
+    /// Creates a setting that has no default and that a scene may change.
     pub fn new(name: &str, kind: SettingKind, description: &str) -> Self {
         Self {
             name: name.to_owned(),

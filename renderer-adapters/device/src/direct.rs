@@ -1,10 +1,10 @@
 //! Direct voltage at a display: the mean of the written voltage over a window of 100 ms.
 //!
-//! A carrier protects a finger from charge and direct voltage. The carrier may be lost in many
-//! ways, such as a wrong rate, an effect, a clipped sample or a fault of the program. The mean
-//! voltage reveals all of these faults. Therefore, the mean voltage is limited by the last part of
-//! the program through which the samples pass before they reach the device. For NI cards, this part
-//! is the adapter's session; for native libraries, it is the host. If the mean voltage would exceed
+//! A carrier protects a finger from charge and direct voltage. Many faults can remove the carrier,
+//! such as a wrong rate, an effect, a clipped sample or a fault of the program. The mean voltage
+//! reveals all of these faults. Therefore, the mean voltage is limited by the last part of the
+//! program through which the samples pass before they reach the device. For NI cards, this part is
+//! the adapter's session; for native libraries, it is the host. If the mean voltage would exceed
 //! the limit, the samples are refused and the output goes to zero. The samples are not corrected,
 //! because a filter that removes the mean would hide the fault and change every sample.
 

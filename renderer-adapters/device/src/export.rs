@@ -1,11 +1,12 @@
 //! The macro that exports an adapter.
 
-/// For a type that implements [`Adapter`](crate::Adapter) and `Default`, generates the C functions
-/// of the ABI, and the table `pub static TABLE` that lists these functions.
+/// The macro takes a type that implements [`Adapter`](crate::Adapter) and `Default`. It generates
+/// the C functions of the ABI, and the table `pub static TABLE`, which lists these functions.
 ///
-/// With `symbols: "FEATURE"`, building the crate with that Cargo feature also exports the function
-/// `htex_device_adapter`, which returns the table. A host loads a native library through this
-/// function, so a library holds exactly one adapter. A panic in the adapter becomes a status code.
+/// If you pass `symbols: "FEATURE"` and build the crate with that Cargo feature, the macro also
+/// exports the function `htex_device_adapter`, which returns the table. A host calls this function
+/// to load the adapter of a native library. Therefore, a library holds exactly one adapter. A panic
+/// in the adapter becomes a status code.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]

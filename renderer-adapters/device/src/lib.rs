@@ -14,13 +14,13 @@
 //! `write` and `status`. Only inputs have `stream`, `start` and `read`.
 //!
 //! Models run in a sandbox, but devices do not. A sandbox ensures that a model produces the same
-//! bits on every computer, which a device does not have to do. Also, a WASM sandbox without imports
+//! bits on every computer; a device needs no such guarantee. Also, a WASM sandbox without imports
 //! cannot reach any hardware. Therefore, the host calls built-in adapters directly, without a
 //! sandbox. Errors of built-in adapters have the same types as errors of native libraries.
 //!
 //! An output checks all samples of a call against its limits before it plays any of them. The host
-//! refuses a display voltage without a limit. After an error the output is at zero and stays there.
-//! The mean voltage of a display is also limited ([`DirectVoltage`]).
+//! refuses an output of display voltages that has no limit. After an error the output is at zero
+//! and stays there. The mean voltage of a display is also limited ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;

@@ -15,23 +15,23 @@ const VARIABLE: &str = "HTEX_DEVICE_PATH";
 const FOLDER: &str = "htex/devices";
 
 /// Where to search for native libraries of devices. The search has this order: `files`, `dirs`, the
-/// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, the folders of all
-/// users, and the adapters built into the program. If two adapters of one direction have the same
-/// id, the adapter that is found first is used.
+/// folders in the environment variable `HTEX_DEVICE_PATH`, the user's folder, the folders that all
+/// users share, and the adapters built into the program. If two adapters of one direction have the
+/// same id, the adapter that is found first is used.
 #[derive(Debug, Clone)]
 pub struct Search {
-    /// Library files to load. A file that cannot be loaded is an error.
+    /// Library files to load. If one of these files cannot be loaded, the search fails.
     pub files: Vec<PathBuf>,
-    /// Folders of libraries. A folder that cannot be read is an error. If a library in a folder
-    /// cannot be loaded, the search continues and adds a [`Note`].
+    /// Folders of libraries. If one of these folders cannot be read, the search fails. If a library
+    /// in a folder cannot be loaded, the search continues and adds a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders that the environment variable names.
     pub env: bool,
     /// Whether to search `htex/devices` in the user's data folder (`$XDG_DATA_HOME`, else
-    /// `~/.local/share`), and then in the folders of all users (`$XDG_DATA_DIRS`, else
+    /// `~/.local/share`), and then in the folders that all users share (`$XDG_DATA_DIRS`, else
     /// `/usr/local/share` and `/usr/share`).
     pub user_dir: bool,
-    /// Whether to read only the descriptors beside the libraries in folders. In this case, the
+    /// Whether to read only the descriptor file beside each library in a folder. In this case, the
     /// search loads no library. The program can list the devices that the search finds, but cannot
     /// open them.
     #[cfg(feature = "descriptions")]
@@ -94,7 +94,8 @@ pub struct AdapterEntry {
 }
 
 impl AdapterEntry {
-    /// Loads the adapter of a native library, which runs with all the rights of this program.
+    /// Loads an adapter from a native library, whose code then runs with all the rights of this
+    /// program.
     ///
     /// # Errors
     /// Returns an error if the file is not a library of this ABI.
@@ -221,8 +222,8 @@ impl Devices {
         &self.notes
     }
 
-    /// Finds an output by its id (e.g. `org.htex.file`) or by its short name (e.g. `file`). Case
-    /// matters only in the id.
+    /// Finds an output by its id (e.g. `org.htex.file`) or by its short name (e.g. `file`). The id
+    /// is case-sensitive, and the short name is not.
     ///
     /// # Errors
     /// [`DeviceError::Unknown`] with the known names.
@@ -230,7 +231,7 @@ impl Devices {
         self.find(Direction::Output, name)
     }
 
-    /// Finds an input as [`Self::find_output`] finds an output.
+    /// Finds an input by its id or short name, with the same rules as [`Self::find_output`].
     ///
     /// # Errors
     /// [`DeviceError::Unknown`] with the known names.
@@ -238,12 +239,12 @@ impl Devices {
         self.find(Direction::Input, name)
     }
 
-    /// Opens the input named by a text `NAME:TARGET`, e.g. `file:rec.csv` or `daq:Dev1/ai0:5`, with
-    /// a profile and further settings. The part after the first colon becomes the value of the
+    /// Opens the input that `NAME:TARGET` names, e.g. `file:rec.csv` or `daq:Dev1/ai0:5`, with a
+    /// profile and further settings. The part after the first colon becomes the value of the
     /// setting that [`Descriptor::target`] names.
     ///
     /// # Errors
-    /// Returns an error if the name is not known, a setting is not usable, or the input cannot be
+    /// Returns an error if the name is unknown, a setting is invalid, or the input cannot be
     /// opened.
     pub fn open_input(
         &self,
@@ -273,7 +274,7 @@ impl Devices {
         })
     }
 
-    /// Returns the adapters in use that have this direction.
+    /// Returns the adapters of one direction, without the shadowed adapters.
     pub fn of_direction(&self, direction: Direction) -> impl Iterator<Item = &AdapterEntry> {
         self.entries.iter().filter(move |entry| entry.descriptor().direction == direction)
     }

@@ -57,7 +57,7 @@ impl<A: Export> Default for State<A> {
 }
 
 impl<A: Export> State<A> {
-    /// Creates a state with no open devices. The first call creates the adapter.
+    /// The first use of this state creates the adapter. The first call creates the adapter.
     pub const fn new() -> Self {
         Self { adapter: OnceLock::new(), devices: Handles::new() }
     }

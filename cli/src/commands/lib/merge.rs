@@ -15,8 +15,9 @@ use crate::outputs::check_outputs;
 
 /// Merge libraries into one, or the results of several builds
 ///
-/// All textures stay the same, byte for byte. `htex lib pack` would write the same library from all
-/// these textures. It is not a conflict if two libraries have the same texture under the same name.
+/// All textures stay the same, byte for byte. The result is the same library that `htex lib pack`
+/// would write from all these textures. It is not a conflict if two libraries have the same texture
+/// under the same name.
 ///
 /// If you give folders that `htex build` wrote, the command merges the libraries, textures, sounds,
 /// reports and pages of all these folders into one folder. In this way, several machines can each

@@ -26,7 +26,7 @@ use crate::progress::bar;
 /// named after its path in that folder, e.g. wood/oak. Textures that come from another library keep
 /// their names. The same textures give the same library, in any order and on any machine. Each
 /// texture must state a licence (`htex edit --license`), because libraries are meant to be passed
-/// on, and only its author may pass on a texture without a licence.
+/// on, and a texture without a licence may be passed on only by its author.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write

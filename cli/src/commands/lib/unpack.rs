@@ -11,8 +11,8 @@ use crate::progress::bar;
 
 /// Write the textures of a library to a folder, each as a file NAME.htex.
 ///
-/// If one of the files exists already, the command fails and leaves that file unchanged, unless you
-/// give --force.
+/// Without --force, the command fails if one of the files exists already, and leaves that file
+/// unchanged.
 #[derive(Args)]
 pub(crate) struct Unpack {
     /// Path or URI of the library

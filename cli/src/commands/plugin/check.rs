@@ -27,8 +27,8 @@ pub(crate) struct Check {
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// Run the check `fuzz` for this time, s. The check makes random sequences of calls [default:
-    /// 16 sequences]
+    /// Run the check `fuzz` for this many seconds. The check makes random sequences of calls
+    /// [default: 16 sequences]
     #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
     fuzz: Option<Duration>,
 

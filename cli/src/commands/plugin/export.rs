@@ -12,10 +12,10 @@ use crate::output::{OutputFile, print, shown, write_file};
 /// Make a plugin's descriptor readable without running the plugin
 ///
 /// Writes the plugin's descriptor into a custom section of a WASM module (`htex.descriptor`), or
-/// beside a native library (LIBRARY.descriptor.json). For this, the command loads the plugin once.
-/// Afterwards, `htex plugin list` and `htex device list` can show the plugin without loading it. If
-/// you sign a WASM module, sign it after this command, not before, because this command changes the
-/// module.
+/// into a file next to a native library (LIBRARY.descriptor.json). For this, the command loads the
+/// plugin once. Afterwards, `htex plugin list` and `htex device list` can show the plugin without
+/// loading it. If you sign a WASM module, sign it after this command, not before, because this
+/// command changes the module.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The plugin: a model or a device

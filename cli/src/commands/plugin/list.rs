@@ -17,10 +17,10 @@ use crate::plugins::PluginArgs;
 /// (`/usr/local/share/htex/plugins`, `/usr/share/htex/plugins`), the models built into this
 /// program.
 ///
-/// If several models have the same id, htex uses the first of these models that --plugin names. If
-/// --plugin names none of them, htex goes through the places in the order above. The first place
-/// that has such a model determines the major version. htex then uses the newest of the models with
-/// this id and major version in all places.
+/// If several models have the same id, and --plugin names at least one of them, htex uses the first
+/// that it names. If --plugin names none of them, htex goes through the places in the order above.
+/// The first place that contains a model with this id determines the major version. htex then uses
+/// the newest of the models with this id and major version in all places.
 ///
 /// The command does not load the native libraries that it finds in these folders. Instead, it reads
 /// the descriptors inside WASM modules, and the descriptor files beside native libraries (`htex

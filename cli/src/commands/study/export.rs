@@ -16,9 +16,10 @@ use crate::output::{show, shown, warn, write_file};
 ///
 /// The table of ratings has the columns participant, texture, model, repetition, rating, attribute,
 /// hidden_reference, response_ms, gain_db, simulated and off_target. The column off_target states
-/// whether speed or force left the study's target by more than 10 %. Without measurements of speed
-/// and force, the column is empty. The table of spectra has the columns participant, texture and
-/// model, and a column with the magnitude at each of the frequencies 20, 25, …, 1000 Hz.
+/// whether speed or force differed from the study's target by more than 10 %. Without measurements
+/// of speed and force, the column is empty. The table of spectra has the columns participant,
+/// texture and model, and a column with the magnitude at each of the frequencies 20, 25, …, 1000
+/// Hz.
 #[derive(Args)]
 pub(crate) struct Export {
     /// Folder with the answers, as written by `htex study run`

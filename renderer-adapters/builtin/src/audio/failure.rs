@@ -1,4 +1,4 @@
-//! Passes errors of a card's thread to the thread that plays or records.
+//! Passes errors from a sound card's thread to the thread that plays or records.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,4 +1,4 @@
-//! The part of an open sound input that runs in the thread that reads the samples.
+//! Runs in the thread that reads the samples of an open sound input.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

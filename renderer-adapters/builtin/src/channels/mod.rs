@@ -3,8 +3,8 @@
 //!
 //! For example, a DualSense controller connected by a cable is a sound card with four channels.
 //! Channels 1 and 2 are its loudspeaker and headset. Channels 3 and 4 are its left and right
-//! actuator. The actuators play the samples themselves, not only a strength, so no part of a
-//! texture is lost.
+//! actuator. The actuators play the texture's samples, not only a vibration strength, so no part of
+//! a texture is lost.
 #![forbid(unsafe_code)]
 
 mod nowhere;

@@ -1,23 +1,24 @@
 //! National Instruments cards. An analog output drives an electrovibration display through an
-//! amplifier, and analog inputs record.
+//! amplifier, and analog inputs record signals.
 //!
 //! The samples of an output are volts *at the display*, including the carrier. The adapter divides
 //! these samples by the amplifier's gain and streams them through NI-DAQmx. The NI-DAQmx library is
 //! not linked, but loaded at run time.
 //!
 //! The voltage is limited in these ways:
-//! - A sample beyond `limit_v` is never output. The driver's own channel limits have the same
-//!   value.
+//! - A sample beyond `limit_v` is never output. The driver's own limits of the output channel are
+//!   set to the same voltage, divided by the amplifier's gain.
 //! - The output goes to zero before and after a stream, on every error, and when the device is
 //!   dropped. A thread of the device, the watchdog, detects an empty buffer even if the program has
-//!   stopped writing samples. The watchdog also sets the output to zero if a call of the driver
-//!   does not return for 0.3 s.
+//!   stopped writing samples. The watchdog also sets the output to zero if a call to the driver
+//!   takes longer than 0.3 s.
 //! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output.
 //! - If a stream does not begin at zero, the adapter outputs a ramp of `ramp_ms` *before* the first
 //!   sample of the stream. If the stream does not end at zero, the adapter outputs such a ramp
-//!   *after* the last sample. The ramp is the stream mirrored in time, multiplied by a weight. The
-//!   weight falls to zero away from the stream. Therefore, the ramp keeps the frequency of the
-//!   carrier. The samples of the stream are never changed.
+//!   *after* the last sample. The ramp consists of the samples next to it in the stream, mirrored
+//!   in time and multiplied by a weight. The weight falls to zero with the distance from the
+//!   stream. Because the ramp is made from the stream, it keeps the frequency of the carrier. The
+//!   samples of the stream are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
 //! [`DaqInput`] records the analog inputs of a card, in volts.

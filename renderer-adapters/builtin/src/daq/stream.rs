@@ -1,5 +1,5 @@
-//! An open analog output. Writing waits for space in the buffer, and finishing waits until all
-//! samples have been output.
+//! An open analog output. A write waits until the buffer has space, and finishing a stream waits
+//! until the card has output all samples.
 //!
 //! The device computes the number of waiting samples from the number of samples that were output.
 //! The driver counts samples as output as soon as they are in the card's memory, which is before

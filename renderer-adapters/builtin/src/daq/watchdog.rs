@@ -1,4 +1,5 @@
-//! A thread that polls the driver, so that the output goes to zero even if the writer hangs.
+//! A watchdog thread that polls the driver, and sets the output to zero if the thread that writes
+//! hangs.
 
 use std::io::Write;
 use std::sync::Arc;

@@ -1,9 +1,9 @@
-//! Writes zero to the output, even if a call of the driver does not return.
+//! Writes zero to the output, even if a call to the driver does not return.
 //!
 //! A driver call may hang while it holds the lock of the session. Therefore, this module does not
 //! use the session. If the watchdog or a caller waits for the session longer than [`HANG`], the
 //! waiting thread sets the output to zero with a separate driver task. When the driver call
-//! returns, the session notices this and ends.
+//! returns, the session notices that another task took over, and ends.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};

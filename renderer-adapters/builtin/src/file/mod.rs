@@ -1,9 +1,9 @@
 //! A device that writes a file. The samples are the mechanical quantity at the finger or the drive
 //! signal of a display. The format is WAV, CSV, NPY or raw samples.
 //!
-//! The device writes samples as fast as they are generated, through a buffer of fixed size, into a
-//! temporary file next to the final file. Finishing the output renames the temporary file. An
-//! output that is dropped before it is finished leaves no file.
+//! The device writes samples as fast as they are generated. The samples go through a buffer of
+//! fixed size into a temporary file next to the final file. Finishing the output renames the
+//! temporary file. An output that is dropped before it is finished leaves no file.
 //!
 //! A WAV file larger than 4 GiB is an error. The RF64 format allows larger files, but few programs
 //! read RF64.
@@ -52,8 +52,8 @@ impl Adapter for FileAdapter {
     }
 }
 
-/// Creates a WAV file of sound with 32-bit floats. The file has one channel for each factor in
-/// `factors`. A channel contains the samples multiplied by the channel's factor.
+/// Creates a WAV sound file with samples that are 32-bit floats. The file has one channel for each
+/// factor in `factors`. A channel contains the samples multiplied by the channel's factor.
 ///
 /// # Errors
 /// Returns an error if a WAV file cannot have this rate, or the file cannot be created.

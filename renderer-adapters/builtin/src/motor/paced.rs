@@ -1,4 +1,4 @@
-//! The part of an open motor output that runs in the thread that writes the samples.
+//! Runs in the thread that writes the samples of an open motor output.
 
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};

@@ -58,8 +58,8 @@ pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError
 /// The values of the settings that all devices with motors have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// Factor from the level of a block to the strength of the motor. Strengths above 1 are limited
-    /// to 1.
+    /// Factor that converts the level of a block to the strength of the motor. Strengths above 1
+    /// are limited to 1.
     pub gain: f64,
     /// Duration of a block, seconds.
     pub block_s: f64,

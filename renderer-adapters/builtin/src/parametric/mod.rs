@@ -1,5 +1,5 @@
-//! Controllers that take points (an amplitude and a frequency) or samples several times per second,
-//! through an OpenXR runtime.
+//! Controllers behind an OpenXR runtime, which receive either points (an amplitude and a frequency)
+//! or samples, several times per second.
 //!
 //! The adapter is not linked to an OpenXR library, but loads a runtime or the installed loader at
 //! run time. The setting `form` chooses what is played:

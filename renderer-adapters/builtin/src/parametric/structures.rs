@@ -1,4 +1,4 @@
-//! The structures of `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the registry
+//! The structures of `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the OpenXR registry
 //! defines them. `openxr-sys` 0.14 does not have them yet.
 
 use std::ffi::c_void;

@@ -1,4 +1,4 @@
-//! The OpenXR functions in use, from a runtime or a loader.
+//! The OpenXR functions that this adapter uses, taken from an OpenXR runtime or loader.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CStr, CString};

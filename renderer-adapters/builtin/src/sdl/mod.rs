@@ -5,10 +5,10 @@
 //! strength. The mean frequency of a block of `block_ms` determines how the level of the block is
 //! divided between the two motors ([`htex_dsp::reduced::two_motors`]).
 //!
-//! SDL drives the motors with a strength for the duration of `HOLD_BLOCKS` blocks. If the device's
-//! thread hangs, SDL stops the motors after this time, as long as the program still polls SDL's
-//! events. If the program ends, the operating system stops the motors. SDL stays initialised after
-//! the device is closed, because the application may also use SDL.
+//! Each command to SDL drives the motors with one strength for the duration of `HOLD_BLOCKS`
+//! blocks. If the device's thread hangs, SDL stops the motors after this time, as long as the
+//! program still polls SDL's events. If the program ends, the operating system stops the motors.
+//! SDL stays initialised after the device is closed, because the application may also use SDL.
 #![deny(unsafe_code)]
 
 mod driver;

@@ -1,5 +1,5 @@
-//! The SDL 2 functions in use, as `SDL_joystick.h`, `SDL.h`, `SDL_hints.h` and `SDL_error.h`
-//! declare them.
+//! The SDL 2 functions that this adapter calls, as `SDL_joystick.h`, `SDL.h`, `SDL_hints.h` and
+//! `SDL_error.h` declare them.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CStr, c_char, c_int, c_void};

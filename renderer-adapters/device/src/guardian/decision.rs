@@ -23,7 +23,8 @@ pub const EVERY: Duration = Duration::from_millis(1_000);
 /// Longest time for a single request. This time does not include the wait for the buffer and the
 /// ramp. A write with a longer timeout is sent as several requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
-/// Longest time for opening a device, because a driver may take seconds to load.
+/// Longest time for opening a device; it is longer than the time for a request, because a driver
+/// may take seconds to load.
 pub const OPENING: Duration = Duration::from_millis(10_000);
 /// Time that the player waits for an answer in addition to the times of the request, the buffer and
 /// the ramp.

@@ -23,7 +23,7 @@ const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
 /// Maximum duration of the buffer, and of the ramp, that the app waits for, milliseconds.
 const MOST_MS: f64 = 10_000.0;
 
-/// Whether an output needs a guardian, because the output could cause harm if it kept its last
+/// Whether an output needs a guardian, i.e. whether the output could cause harm if it kept its last
 /// value. An output needs a guardian if it plays display voltages at the pace of a clock.
 pub fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage

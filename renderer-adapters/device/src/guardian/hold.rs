@@ -1,4 +1,4 @@
-//! The helper program's side: holds the device for the app at the other end of the pipes.
+//! Holds a device in the helper program, for the app at the other end of the pipes.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::time::Duration;

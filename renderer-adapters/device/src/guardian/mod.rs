@@ -8,13 +8,13 @@
 //! zero, and exits. If the app hangs and the pipe stays open, the device's buffer becomes empty,
 //! and the device then sets its output to zero by itself.
 //!
-//! If the guardian ends before the app, is stopped or hangs, the app kills it and starts a second
-//! helper process, which sets the output to zero. The module [`decision`] determines when and how
-//! the app does this.
+//! If the guardian ends before the app, is stopped or hangs, the app kills it and starts another
+//! process, which sets the output to zero. The module [`decision`] determines when and how the app
+//! does this.
 //!
-//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] returns true. The helper program is
-//! the command `htex guard` ([`htex`]), or a program of the app that calls [`hold`]. An app needs
-//! its own helper program for devices that the command `htex` does not have.
+//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] returns true. The program that runs
+//! in the guardian's process is the command `htex guard` ([`htex`]), or a program of the app that
+//! calls [`hold`]. For devices that the command `htex` does not have, an app needs its own program.
 //!
 //! ```no_run
 //! use std::time::Duration;

@@ -1,8 +1,8 @@
 //! The player's thread that talks to the guardian and executes the actions of
 //! [`crate::guardian::decision`].
 //!
-//! This thread never blocks. Pipes, attempts and standard error may all hang, so each of them has
-//! its own thread.
+//! This thread never blocks. A pipe, an attempt to set the output to zero, and standard error may
+//! all hang, so each of them has its own thread.
 
 use std::io::Write;
 use std::process::Child;

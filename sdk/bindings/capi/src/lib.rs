@@ -3,7 +3,7 @@
 //!
 //! - C refers to objects by handles, which are numbers. A call returns an error if the object was
 //!   freed, if the number was never a handle, or if another thread is using the object. None of
-//!   these mistakes causes undefined behaviour (`handles`).
+//!   these mistakes causes undefined behaviour (see the module `handles`).
 //! - A call returns a [`htex_status`]. [`htex_last_error`] returns the text of the calling thread's
 //!   last error. No call unwinds.
 //! - A struct of options begins with its size in bytes. In every other field, zero selects the
@@ -32,8 +32,8 @@ mod shutdown;
 mod status;
 mod voice;
 
-/// Helpers for writing C functions. The crate in `sdk/bindings/web/author` uses them for the
-/// function that it adds. They are not part of the C interface.
+/// Helpers for writing C functions. The crate in `sdk/bindings/web/author` adds one C function, for
+/// which it uses these helpers. The helpers are not part of the C interface.
 #[doc(hidden)]
 pub mod calls {
     pub use crate::memory::{allocate, free};

@@ -52,8 +52,8 @@ pub unsafe extern "C" fn htex_library_from_bytes(
 }
 
 /// [any thread; calls the reader] Opens a library whose bytes come from the program's own
-/// functions, `reader`. The call copies the struct `reader`. The functions in `reader` may be
-/// called until the library is freed.
+/// functions, `reader`. The call copies the struct `reader`. The library may call the functions in
+/// `reader` until htex_library_free frees the library.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
@@ -154,7 +154,8 @@ pub(crate) use calls::clear;
 
 #[cfg(any(not(feature = "library"), target_family = "wasm"))]
 mod calls {
-    //! Versions of the library calls for builds without libraries. Each one returns an error.
+    //! The library calls in builds without the feature `library`, and in browsers. Each one returns
+    //! an error.
     use super::*;
     use crate::status::{Failure, guarded};
 

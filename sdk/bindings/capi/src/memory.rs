@@ -21,8 +21,8 @@ pub fn allocate(bytes: usize) -> *mut u8 {
 /// Frees memory from [`allocate`]. `bytes` must be the number of bytes that was allocated.
 ///
 /// # Safety
-/// Either the pointer is NULL, or it comes from [`allocate`] with the same number of bytes and its
-/// memory was not freed before.
+/// The pointer must be NULL, or it must come from [`allocate`] with the same number of bytes and
+/// its memory must not have been freed before.
 pub unsafe fn free(at: *mut u8, bytes: usize) {
     if let Some(layout) = layout(bytes).filter(|_| !at.is_null()) {
         // SAFETY: as here.

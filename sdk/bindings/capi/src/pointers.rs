@@ -1,6 +1,6 @@
 //! Converts C pointers to Rust values. The library cannot check the following rule, so the caller
-//! of a C function must keep it. A pointer that is not NULL points to as many values as the length
-//! beside it states, and these values stay valid during the call.
+//! of a C function must keep it. A pointer that is not NULL must point to as many values as the
+//! length beside it states, and these values must stay valid during the call.
 
 use std::ffi::{CStr, c_char};
 

@@ -22,7 +22,7 @@ pub struct htex_reader {
     /// Must fill `buffer` with `len` bytes of the file, starting at `offset`. It must return 0
     /// after success, and any other number after an error. The requested bytes always lie within
     /// the file. The library calls this function in the thread that called the library. If the file
-    /// is a library of textures, several threads may call the function at the same time.
+    /// is a texture library, several threads may call the function at the same time.
     pub read: Option<
         unsafe extern "C" fn(context: *mut c_void, offset: u64, buffer: *mut u8, len: usize) -> i32,
     >,
@@ -38,9 +38,9 @@ pub struct htex_files {
     pub size: u32,
     /// First argument that the library passes to `open`.
     pub context: *mut c_void,
-    /// Must open the file `name` and fill in `file`, whose `size` is already set. It must return 0
-    /// after success, and any other number if there is no such file. `name` is the file's name in
-    /// the scene file, in UTF-8.
+    /// Must open the file `name` and fill in `file`. The library has already set the field `size`
+    /// of `file`. It must return 0 after success, and any other number if there is no such file.
+    /// `name` is the file's name in the scene file, in UTF-8.
     pub open: Option<
         unsafe extern "C" fn(
             context: *mut c_void,

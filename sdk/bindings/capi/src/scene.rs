@@ -155,7 +155,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! Versions of the scene calls for builds without scenes. Each one returns an error.
+    //! The scene calls in builds without the feature `scene`. Each one returns an error.
     use super::*;
     use crate::status::{Failure, guarded};
 

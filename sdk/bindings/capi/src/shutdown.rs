@@ -11,8 +11,8 @@ use crate::voice::VOICES;
 /// function that was set with htex_set_log. Existing handles become invalid, but new objects may be
 /// made afterwards. The constants of the models that the program used stay in memory. For all six
 /// built-in models together, these constants take 0.2 MB. If an object is in use, the call returns
-/// HTEX_STATUS_BUSY. Objects of the same kind, and of the kinds that come later in this order, are
-/// then not freed.
+/// HTEX_STATUS_BUSY. In this case, objects of the same kind, and of the kinds that come later in
+/// the order above, are not freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_shutdown() -> htex_status {
     guarded(|| {

@@ -41,7 +41,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All parts, in the order of the matrix.
+    /// All parts, in the order in which the matrix of results lists them.
     pub const ALL: [Self; 6] =
         [Self::Assets, Self::Libraries, Self::Scenes, Self::Recordings, Self::Baked, Self::Playing];
 
@@ -70,7 +70,7 @@ impl Part {
     }
 }
 
-/// A conformance class of the specification: what a program must be able to do.
+/// A conformance class of the specification: an ability that a program of this class must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Class {
@@ -84,7 +84,7 @@ pub enum Class {
 }
 
 impl Class {
-    /// All classes, in the order of the matrix.
+    /// All classes, in the order in which the matrix of results lists them.
     pub const ALL: [Self; 3] = [Self::Validator, Self::Reader, Self::Player];
 
     /// Returns the name.
@@ -128,14 +128,13 @@ names! {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConformanceError {
-    /// The command cannot be started with a file.
+    /// The reader's command is invalid or cannot be started.
     #[error("the command `{command}` {problem}")]
     Command { command: String, problem: String },
     /// The folder has no conformance files, or no files of the requested part.
     #[error("{}: {problem}; give the folder `spec` of htex, or the one of a release", path.display())]
     Files { path: PathBuf, problem: String },
-    /// A conformance file cannot be read, or the file with a question for the reader cannot be
-    /// written.
+    /// A conformance file cannot be read, or the input file for the reader cannot be written.
     #[error("{}: {error}", path.display())]
     File { path: PathBuf, error: std::io::Error },
     /// Somebody stopped the run.

@@ -1,4 +1,4 @@
-//! Runs a reader once, within limits.
+//! Runs a reader program once, with limits on its time and its output.
 
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};

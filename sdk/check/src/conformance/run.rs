@@ -1,4 +1,4 @@
-//! Starts a reader for each conformance file.
+//! Starts the program under test (the reader) once for each conformance file.
 
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use super::{Class, ConformanceError, Part};
 pub struct Options {
     /// The folder `spec` of htex, which contains the folders of conformance files.
     pub files: PathBuf,
-    /// The parts to run. Parts without files are left out.
+    /// The parts to run. The function skips a part that has no files.
     pub parts: Vec<Part>,
     /// The classes to count.
     pub classes: Vec<Class>,

@@ -8,10 +8,10 @@
 //! thread has its own count. The table of the program itself is not changed, so the host's own
 //! allocations are not counted.
 //!
-//! This method does not detect two kinds of calls: calls of an allocator that is linked statically
-//! into a library and maps pages itself, and calls to an address that `dlsym` returned. It also
-//! does not detect calls in libraries that are loaded after `watch`, or in threads that a library
-//! starts.
+//! This method does not detect two kinds of calls. The first are calls to an allocator that is
+//! linked statically into a library and maps pages itself. The second are calls to an address that
+//! `dlsym` returned. This method also does not detect calls in libraries that are loaded after
+//! `watch`, or in threads that a library starts.
 //!
 //! Other methods have disadvantages. Comparing the heap before and after does not show memory that
 //! was allocated and freed in between. If the program defined its own `malloc`, all other commands

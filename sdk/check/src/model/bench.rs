@@ -19,8 +19,8 @@ const SAMPLES: usize = 8_192;
 /// A model to measure, and the way in which it was loaded.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The model's short name. If several subjects have the same name, the benchmark compares them
-    /// with the first of them.
+    /// The model's short name. If the benchmark measures several subjects with the same name, it
+    /// compares each of them with the first.
     pub model: String,
     /// How the model was loaded.
     pub way: String,
@@ -74,8 +74,9 @@ struct Runner {
     rounds: [Vec<f64>; 5],
 }
 
-/// Measures models in one interleaved run, so that other load on the machine affects all models
-/// equally. Each model renders with parameters that were fitted to a reference spectrum.
+/// Measures the models in one run that alternates between them, so that other load on the machine
+/// affects all models equally. Each model renders with parameters that were fitted to a reference
+/// spectrum.
 ///
 /// # Errors
 /// Returns [`CheckError::Model`] when a model cannot be fitted or fails to render.

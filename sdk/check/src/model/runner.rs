@@ -12,14 +12,15 @@ use crate::model::table::CHECKS;
 
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. The checker calls the program with the program's own
-    /// arguments, then the model's file, the name of the check, and the option for the seed. If
-    /// there is a second file to compare with, the option for this file follows.
+    /// A program that calls [`run_one`]. The checker starts this program with the arguments in
+    /// [`Runner`], followed by the model's file, the name of the check, and the option for the
+    /// seed. If the check compares the model with a second file, the option for the second file
+    /// comes last.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
-    /// Names of the checks to run. The checks that these checks need also run. `None` runs all
-    /// checks.
+    /// Names of the checks to run. The runner also runs every check that these checks depend on.
+    /// `None` runs all checks.
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,

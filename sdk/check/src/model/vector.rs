@@ -1,4 +1,5 @@
-//! The memory of fenced arrays on systems other than 64-bit Linux, where no page is protected.
+//! The memory of fenced arrays on systems other than 64-bit Linux: an ordinary vector without
+//! protected pages.
 
 use crate::harness::Finding;
 

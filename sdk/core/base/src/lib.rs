@@ -2,8 +2,8 @@
 //! devices.
 //!
 //! - [`finding`]: results of validation, with rules, reports and hints.
-//! - [`files`]: files that are written completely or not at all, and safe access to files and
-//!   folders that come from somebody else.
+//! - [`files`]: writes files completely or not at all, and gives safe access to files and folders
+//!   from untrusted sources.
 //! - `storage`: reads and writes files by URI. This module needs the feature `storage`. Access to
 //!   web servers and object stores needs the feature `cloud`.
 //! - [`schema`]: JSON Schemas made from Rust types, and checks against them.

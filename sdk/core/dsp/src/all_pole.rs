@@ -28,8 +28,9 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 /// direct form II, the recursion unrolled for four samples). While the coefficients change, the
 /// filter runs as a lattice, which is stable if each reflection coefficient is inside (-1, 1). The
 /// switch from the lattice to the direct form is inaudible. The filter switches only after the
-/// coefficients have been constant for at least as many samples as the lattice has stages. The
-/// state of the lattice then depends only on its last outputs.
+/// coefficients have been constant for at least as many samples as the lattice has stages. After
+/// this time, the state of the lattice depends only on its last outputs, from which the direct form
+/// can continue.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;

@@ -29,10 +29,10 @@ const EDGE_POINTS: usize = 4;
 const BESIDE: f64 = 0.5;
 
 /// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. The filters are
-/// Chebyshev filters. Inside the band, the magnitude is constant within 0.2 dB, except at
-/// frequencies that are closer to an edge than an eighth of the edge's frequency. Half a grid bin
-/// outside each edge, the magnitude is 3 dB down. An edge at or above the Nyquist frequency gets no
-/// filter. The output is delayed by some samples ([`Pipeline`]).
+/// Chebyshev filters. Inside the band, the magnitude is constant within 0.2 dB. It may deviate more
+/// at frequencies that are closer to an edge than an eighth of the edge's frequency. Half a grid
+/// bin outside each edge, the magnitude is 3 dB down. An edge at or above the Nyquist frequency
+/// gets no filter. The output is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -59,10 +59,10 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// A table that states which part of the power of noise, at each frequency, passes [`band_limit`]
-/// and is measured in the bins of the band. The table covers each grid bin in the band and some
-/// bins outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only
-/// its part below that frequency counts.
+/// A table that states, for each frequency, which part of a noise's power passes [`band_limit`] and
+/// is measured in the bins of the band. The table covers each grid bin in the band and some bins
+/// outside. Bins near the edges are subdivided. If a bin contains the Nyquist frequency, only its
+/// part below that frequency counts.
 ///
 /// The table corrects the level of filtered noise. Without this correction, the noise would be too
 /// weak for three reasons. The filters have ripple, a part of the highest bin lies above the
@@ -96,7 +96,7 @@ impl PassedPower {
         PASSED.get(key, || Arc::new(Self::new(band, rate_hz)))
     }
 
-    /// Computes the table for a band, hertz, and a sample rate, hertz.
+    /// Computes the table for a band and a sample rate (both in hertz).
     pub fn new(band: Band, rate_hz: f64) -> Self {
         Self::read_by(band, rate_hz, |hz| read_part(band, hz))
     }
@@ -137,9 +137,9 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// Returns the RMS of white noise after the all-pole filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate,
-    /// measured as [`Self::level_rms`] does. Before the filter, the noise has a magnitude of 1 in
-    /// each bin. Does not allocate.
+    /// Returns the RMS of white noise after the all-pole filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate.
+    /// The RMS is measured as in [`Self::level_rms`]. Before the filter, the noise has a magnitude
+    /// of 1 in each bin. Does not allocate.
     pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
         let mut power = 0.0;
         wide(AllPolePower { turns: &self.turns, coefficients, power: &mut power });

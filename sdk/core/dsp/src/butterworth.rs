@@ -10,7 +10,7 @@ use core::ops::Deref;
 
 use crate::biquad::Biquad;
 
-/// Highest order that can be designed: 400 dB per decade, more than the dynamic range of a
+/// Highest order of a filter: its slope of 400 dB per decade exceeds the dynamic range of a
 /// spectrum.
 pub const MAX_ORDER: usize = 20;
 

@@ -7,7 +7,7 @@
 //! energies of the spectrum and of the model are each divided by their sum.
 //!
 //! The search is the Levenberg–Marquardt method. The derivatives are computed as finite
-//! differences, so a model has to provide only its power.
+//! differences, so a model has to provide only its power spectrum.
 
 use alloc::vec::Vec;
 

@@ -3,7 +3,8 @@
 //! Other FFT libraries use different instructions on different processors, so their rounding
 //! differs between processors. Those libraries also take sines from the system's C library. The
 //! FFTs of this module are plain arithmetic, with tables from `libm`. These FFTs use Stockham's
-//! algorithm (radices 2 to 5 and 7), and Bluestein's for lengths with other prime factors.
+//! algorithm (radices 2 to 5 and 7). For lengths with other prime factors they use Bluestein's
+//! algorithm.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;

@@ -1,8 +1,8 @@
 //! How a signal fluctuates in time, which its spectrum does not show.
 //!
 //! Stationary noise with the spectrum of a recording has the recording's average power in every
-//! band, at all times. But the recording itself becomes stronger and weaker, several times a second
-//! and in many bands together. [`Fluctuation`] describes this in three ways:
+//! band, at all times. But the recording itself becomes stronger and weaker several times a second,
+//! in many bands at the same time. [`Fluctuation`] describes this in three ways:
 //!
 //! - the modulation spectrum: how strongly the power in each third octave rises and falls at 1 to
 //!   64 Hz;
@@ -50,8 +50,8 @@ pub struct Fluctuation {
     pub own_db: [f64; OCTAVES],
     /// Kurtosis of the signal between 20 and 1000 Hz; 3 for Gaussian noise.
     pub kurtosis: f64,
-    /// Mean Pearson correlation between the amplitude envelopes of four bands (20, 60, 150, 400 and
-    /// 1000 Hz). `None` if fewer than two of these bands lie in the signal's band.
+    /// Mean Pearson correlation between the amplitude envelopes of four bands (edges: 20, 60, 150,
+    /// 400 and 1000 Hz). `None` if fewer than two of these bands lie in the signal's band.
     pub envelope_correlation: Option<f64>,
 }
 
@@ -139,8 +139,8 @@ const LEAST_EXCESS_S: f64 = 1.0;
 pub const EXCESS_BANDS: usize = WIDE_HZ.len() - 1;
 
 /// The excess fluctuation of a band: how much more its amplitude envelope varies than the envelope
-/// of stationary Gaussian noise with the same spectrum. All numbers are variances relative to the
-/// square of the mean envelope.
+/// of stationary Gaussian noise with the same spectrum. The variances are relative to the square of
+/// the mean envelope.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnvelopeExcess {
     /// The measured variance minus the expected variance, at 1 to 8 Hz and at 8 to 32 Hz; may be
@@ -156,11 +156,11 @@ pub struct EnvelopeExcess {
 /// Bands above half the sample rate are `None`. If a signal is longer than [`MOST_S`], only its
 /// middle is measured.
 ///
-/// The expected variance is exact for Gaussian noise that is periodic in the length of the signal.
-/// Let ρ be the correlation of the band's analytic signal with itself at a delay. Then the envelope
-/// and its copy at that delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the
-/// square of their mean (D. Middleton, 1948). So the function computes the expected variance from a
-/// formula, and not from random signals with the same spectrum.
+/// The expected variance is exact for Gaussian noise whose period is the length of the signal. Let
+/// ρ be the correlation of the band's analytic signal with itself at a delay. Then the envelope and
+/// its copy at that delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of
+/// their mean (D. Middleton, 1948). So the function computes the expected variance from a formula,
+/// and not from random signals with the same spectrum.
 ///
 /// `None` if the signal is shorter than 1 s, silent, or not finite, or if half its
 /// sample rate is below 128 Hz.

@@ -58,7 +58,7 @@ impl AllPoleLattice {
     }
 
     /// Returns the reflection coefficients. The caller may change the coefficients between samples;
-    /// the state does not change.
+    /// this does not change the state.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
     }

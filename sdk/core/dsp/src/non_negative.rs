@@ -76,7 +76,7 @@ impl Scratch {
 }
 
 impl NonNegative {
-    /// Copies the weights of a bank.
+    /// Creates a solver with a copy of a filter bank's weights.
     pub fn new(bank: &TriangleBank) -> Self {
         let rows = bank.rows();
         let column = |c: usize| {

@@ -1,6 +1,6 @@
 //! Vectors that contain one number for each of four voices. In a recursive filter each sample
-//! depends on the sample before it. Therefore successive samples cannot be computed at the same
-//! time, and the lanes of a vector register contain samples of different voices instead.
+//! depends on the sample before it. Therefore, successive samples cannot be computed at the same
+//! time. Instead, the lanes of a vector register contain samples of different voices.
 
 use core::ops::{Add, Mul, Sub};
 

@@ -1,9 +1,10 @@
 //! A random envelope, which makes stationary noise fluctuate as a recording does.
 //!
 //! The envelope is `exp(x)`, where x is Gaussian noise with the frequencies 0.5 to 32 Hz. Two
-//! standard deviations set how strong the slow part (0.5 to 8 Hz) and the fast part (8 to 32 Hz) of
-//! x are. The mean square of the envelope is 1. So the envelope changes neither the level of the
-//! noise nor the power in a band that is wider than the range of the envelope's frequencies.
+//! parameters, both standard deviations, set the strength of the slow part (0.5 to 8 Hz) and of the
+//! fast part (8 to 32 Hz) of x. The mean square of the envelope is 1. So the envelope changes
+//! neither the level of the noise nor the power in a band that is wider than the range of the
+//! envelope's frequencies.
 //!
 //! At every sample rate, the envelope is computed 500 times a second, and interpolated linearly
 //! between these times. Therefore it costs little, and is the same function of time at every rate.

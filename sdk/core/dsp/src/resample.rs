@@ -1,9 +1,10 @@
 //! Streaming sample-rate conversion by polyphase windowed-sinc filters.
 //!
-//! A texture voice renders at its own, low rate, and the converter brings it to the rate of the
-//! device. The converter pulls exactly the samples that it needs from its source, never allocates
-//! while it runs, and gives the same samples for any block size. The project has its own converter
-//! because the resamplers of other libraries work in chunks of a fixed size.
+//! A texture voice renders at its own, low rate. The converter converts the voice's samples to the
+//! rate of the device. The converter pulls exactly the samples that it needs from its source, never
+//! allocates while it runs, and gives the same samples for any block size. The resamplers of other
+//! libraries work in chunks of a fixed size, which does not meet these requirements. Therefore, the
+//! project has its own converter.
 //!
 //! Textures have no content above 1 kHz, so voices generate noise at sample rates of 2 to 4 kHz. A
 //! voice then generates five to eight times fewer samples than at the rate of the device. In
@@ -146,7 +147,7 @@ pub struct Work {
     pub rational: Part,
 }
 
-/// Work of all stages of one kind for each sample of a converter's output.
+/// Average work that all stages of one kind do for each sample of a converter's output.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Part {
     /// Number of samples that the stages compute.
@@ -156,9 +157,9 @@ pub struct Part {
 }
 
 /// The amplitude that a conversion to a high rate passes at each frequency. A program needs this
-/// amplitude for a source with a fixed rate whose frequencies extend into the transition band
-/// around half of this rate. In the middle of the transition band, half the amplitude passes, and
-/// an image with the same amplitude appears.
+/// amplitude for a source with a fixed rate, if the source's frequencies extend into the transition
+/// band around half of this rate. In the middle of the transition band, half the amplitude passes,
+/// and an image with the same amplitude appears.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,
@@ -170,9 +171,9 @@ pub struct OwnRate {
 const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
-    /// Computes the amplitude for a source with this sample rate and highest frequency, hertz.
-    /// Returns `None` if this frequency is below the transition band, because the source then
-    /// passes unchanged.
+    /// Computes the amplitude for a source with this sample rate and this highest frequency (both
+    /// in hertz). Returns `None` if this frequency is below the transition band, because the source
+    /// then passes unchanged.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
         Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })
@@ -183,8 +184,8 @@ impl OwnRate {
         self.rate_hz
     }
 
-    /// Returns the amplitude that passes at a frequency, hertz. A frequency above half the rate is
-    /// an image.
+    /// Returns the amplitude that passes at a frequency (hertz). A frequency above half the
+    /// source's rate belongs to an image.
     pub fn amplitude(&self, hz: f64) -> f64 {
         let middle = 0.5 * self.taps as f64 - 1.0;
         let turn = core::f64::consts::TAU * hz / self.rate_hz;

@@ -29,9 +29,9 @@ impl Loop {
     /// end of `samples` into the start, so the loop is shorter than `samples` by `fade`.
     ///
     /// The gains of the cross-fade are a sine and a cosine. Both are divided by the square root of
-    /// the power that the sum of the two pieces would otherwise have. This power depends on the
-    /// correlation of the pieces. Noise keeps its power, and a sound that repeats with the period
-    /// of the loop stays unchanged.
+    /// the power that the sum of the two pieces would have without this division. This power
+    /// depends on the correlation of the pieces. Noise keeps its power, and a sound that repeats
+    /// with the period of the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;

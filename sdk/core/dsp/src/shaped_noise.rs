@@ -33,9 +33,9 @@ const LOW_RATE_HZ: f64 = 2_400.0;
 
 /// An endless stream of noise whose spectrum follows a magnitude curve.
 ///
-/// The noise has unit RMS, as measured in the bins of the band. These bins do not measure some of
-/// the power at the edges of the band (1/6 of the power of an edge bin). So all components are
-/// amplified to compensate for this loss.
+/// The noise has unit RMS, as measured in the bins of the band. At the edges of the band, these
+/// bins miss some of the power (1/6 of the power of an edge bin). So all components are amplified
+/// to compensate for this loss.
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component, because the inverse FFT doubles it.
@@ -105,9 +105,9 @@ enum Pending {
 }
 
 /// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
-/// `wanted_hz`. The result is `wanted_hz` divided by an integer. This is the lowest such rate at
-/// which half the rate lies far enough above the band. The interpolation to `wanted_hz` then has
-/// room for a wide transition band.
+/// `wanted_hz`. The result is `wanted_hz` divided by an integer. It is the lowest such rate whose
+/// half lies far enough above the band. The interpolation to `wanted_hz` then has room for a wide
+/// transition band.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     // The first image then begins at 2.7 times the upper edge, so a single short filter separates
     // it (see `specs` in `resample.rs`).

@@ -1,5 +1,5 @@
-//! Sharpens a power spectrum to compensate for the blur of the Hann window. A measurement of noise
-//! with the sharpened spectrum then gives the original spectrum.
+//! Sharpens a power spectrum to compensate for the blur of the Hann window. If noise has the
+//! sharpened spectrum, a measurement through this window gives the original spectrum.
 
 /// Number of sharpening steps.
 const SHARPENINGS: usize = 2;

@@ -5,10 +5,10 @@
 //!
 //! The samples are computed by recurrences. At regular intervals (anchors) the recurrences restart
 //! from the counted phase. While nothing changes, an oscillator generates eight samples at a time
-//! from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are
-//! independent, which suits vector instructions. While amplitudes or frequencies change, the
-//! oscillator computes each sample from the sample before it, by rotating a point in the complex
-//! plane by the oscillator's angle per sample.
+//! from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight samples do not
+//! depend on each other, which suits vector instructions. While amplitudes or frequencies change,
+//! the oscillator computes each sample from the sample before it, by rotating a point in the
+//! complex plane by the oscillator's angle per sample.
 
 use alloc::vec::Vec;
 
@@ -118,8 +118,8 @@ impl SineBank {
         bank
     }
 
-    /// Changes to `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10
-    /// ms; phases are continuous. The oscillator with index i changes to sine i. Does not allocate.
+    /// Plays `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10 ms;
+    /// phases are continuous. The oscillator with index i changes to sine i. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
         self.advance();
         // Oscillators that fade out stay in use until the ramp ends.

@@ -57,9 +57,9 @@ impl SegmentAnalyzer {
         self.fft.make_bins()
     }
 
-    /// Factor from the magnitude of a windowed bin to the amplitude of a sinusoid: `2 / Σw`, which
-    /// is `4 / len`. The factor 2 accounts for the half of the amplitude that is at the negative
-    /// frequency.
+    /// Factor that converts the magnitude of a windowed bin to the amplitude of a sinusoid: `2 /
+    /// Σw`, which is `4 / len`. The factor 2 accounts for the half of the amplitude that is at the
+    /// negative frequency.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
     }

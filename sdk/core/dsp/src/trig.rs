@@ -1,9 +1,9 @@
 //! Sines, cosines and tangents of angles up to [`LARGEST`], with the same bits as `libm`. `libm`'s
 //! code for larger angles is left out, because it would add 2 kB to a WASM module.
 //!
-//! The series and the reduction come from FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
-//! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
-//! business. Permission to use, copy, modify, and distribute this software is freely granted,
+//! The series and the reduction of the angle come from FreeBSD's msun, as in `libm`: Copyright (C)
+//! 1993 by Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems,
+//! Inc. business. Permission to use, copy, modify, and distribute this software is freely granted,
 //! provided that this notice is preserved.
 
 use crate::wide::{Work, wide};

@@ -41,8 +41,8 @@ pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
     SMALLEST_THRESHOLD_M * libm::pow(ratio, slope)
 }
 
-/// Mechanical impedance of a fingertip against a force along the surface: spring, damper and mass
-/// in parallel.
+/// Mechanical impedance with which a fingertip resists a force along the surface: spring, damper
+/// and mass in parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skin {
     pub stiffness_n_m: f64,
@@ -62,8 +62,8 @@ impl Default for Skin {
 }
 
 impl Skin {
-    /// Returns the displacement that a sinusoidal force of 1 N causes, metres, at a frequency in
-    /// hertz.
+    /// Returns the displacement (metres) that a sinusoidal force of 1 N causes at a frequency
+    /// (hertz).
     ///
     /// ```
     /// use htex_dsp::vibrotactile::Skin;
@@ -90,7 +90,7 @@ pub struct Listener {
 
 impl Listener {
     /// A listener with more sensitive fingertips than most people: the threshold is 10 dB lower
-    /// than usual, and the skin yields twice as far.
+    /// than usual, and the same force moves the skin twice as far.
     ///
     /// ```
     /// use htex_dsp::vibrotactile::Listener;
@@ -112,7 +112,7 @@ impl Listener {
         }
     }
 
-    /// Returns this listener's detection threshold, metres, peak, at a frequency in hertz above 0.
+    /// Returns this listener's detection threshold (metres, peak) at a frequency (hertz, above 0).
     pub fn threshold_m(&self, frequency_hz: f64) -> f64 {
         detection_threshold_m(frequency_hz) * libm::pow(10.0, self.threshold_shift_db / 20.0)
     }

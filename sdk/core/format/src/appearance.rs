@@ -1,4 +1,4 @@
-//! An extension of assets that states how the surface looks. Programs that show textures use it.
+//! The asset extension that states how the surface looks. Programs that show textures use it.
 //! Players do not need it.
 
 use schemars::JsonSchema;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Manifest;
 
-/// The name of the extension with the [`Appearance`] of a surface.
+/// The name of the extension that contains the [`Appearance`] of a surface.
 pub const APPEARANCE: &str = "org.htex.appearance/1";
 
 /// How a surface looks: its colour, gloss and relief.

@@ -3,9 +3,9 @@
 //! For each condition, a block contains the stored values of each field that is not coded. Values
 //! are in little-endian order and have a fixed width, except in packed lists. The length of a list
 //! is a variable-length integer of bincode, which precedes the values of the list. After the values
-//! of all conditions, the block contains the coded fields of all conditions together, as one code
-//! (`coded.rs`). The layout depends only on the fields in the manifest. This is the only module
-//! that uses bincode.
+//! of all conditions, the block contains the coded fields of all conditions, which are encoded
+//! together (`coded.rs`). The layout depends only on the fields in the manifest. This is the only
+//! module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -109,9 +109,9 @@ pub(crate) fn decode(
     }
 }
 
-/// Returns the number of bytes that a flat array takes in a parameter block with only one
-/// condition. In a block with several conditions, coded fields take fewer bytes for each later
-/// condition.
+/// Returns the number of bytes that a parameter set (a flat array) takes in a parameter block with
+/// only one condition. In a block with several conditions, coded fields take fewer bytes for each
+/// later condition.
 ///
 /// # Errors
 /// Returns the errors of [`round_parameters`].
@@ -144,7 +144,8 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
     values.iter().enumerate().map(step).collect()
 }
 
-/// Rounds a flat array to the values that an asset stores. A reader gets exactly these values.
+/// Rounds a parameter set (a flat array) to the values that an asset stores. A reader gets exactly
+/// these values.
 ///
 /// `flat` contains the fields in order: the value of a scalar, or the length of a list followed by
 /// its values.

@@ -1,6 +1,6 @@
-//! Coded fields. The encoder predicts each number, which is stored as an 8-bit step, from the
-//! previous condition and from the previous numbers. The encoder stores the errors of the
-//! predictions in a range code with adaptive probabilities.
+//! Coded fields. The encoder predicts each number (an 8-bit step) from the previous condition and
+//! from the previous numbers. The encoder stores the errors of the predictions in a range code with
+//! adaptive probabilities.
 //!
 //! In a grid of 405 conditions of the model Bands, a condition takes 9.7 bytes if it is coded, and
 //! 20.1 bytes if it is packed. The measurements are in `docs/accuracy-and-time.md`.

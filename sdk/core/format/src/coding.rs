@@ -10,8 +10,8 @@ use crate::manifest::{StoredAs, StoredField};
 use crate::{Asset, CODED, Manifest, Steps};
 
 impl Manifest {
-    /// Returns whether the asset is coded, so that only readers that support the extension
-    /// [`CODED`] can use it.
+    /// Returns whether the asset is coded. Only readers that support the extension [`CODED`] can
+    /// use a coded asset.
     pub fn is_coded(&self) -> bool {
         self.extensions_required.iter().any(|name| name == CODED)
     }

@@ -66,7 +66,7 @@ pub enum WriteError {
         /// Largest value that the field can store.
         high: f64,
     },
-    /// A flat array does not match its fields.
+    /// A flat array of parameters does not match the fields.
     #[error(
         "the flat parameters do not match the fields: {problem}; give each scalar one value \
          and each list its length and then its values"

@@ -104,9 +104,8 @@ enum Part {
 /// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// The returned list contains all mismatches; the mismatches of stored fields come first, in the
-/// order of the fields. The list contains all mismatches; the mismatches of stored fields come
-/// first, in the order of the fields.
+/// Returns an error if any field does not match. The error is a list of all mismatches; the
+/// mismatches of stored fields come first, in the order of the fields.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,

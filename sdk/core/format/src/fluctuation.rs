@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Noise with a recorded spectrum is equally strong at all times, but a recording is not. A player
 /// can multiply the noise by an envelope `exp(x)` with the mean square 1, where x is Gaussian
 /// noise. The two fields contain the standard deviations of the slow and the fast part of x, in
-/// steps of 1/32 dB. The texture's spectrum and level stay as they are.
+/// steps of 1/32 dB. The fluctuation changes neither the texture's spectrum nor its level.
 ///
 /// ```
 /// use htex_format::Fluctuation;

@@ -214,9 +214,10 @@ impl Law {
     ///   J. J. Lopez Delgado, K. J. Kuchenbecker 2014).
     /// - Bare finger: vibrations scale in time with the speed (C. M. Greenspon, K. R. McLellan, J.
     ///   D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre, J.-L. Thonnard 2012).
-    ///   So the level of a velocity is proportional to the speed, and the level of an acceleration
-    ///   to the square of the speed. The level of other quantities does not change with the speed.
-    ///   All levels are proportional to the normal force.
+    ///   Therefore, if the samples are a velocity, their level is proportional to the speed; if
+    ///   they are an acceleration, their level is proportional to the square of the speed. The
+    ///   level of other quantities does not change with the speed. All levels are proportional to
+    ///   the normal force.
     /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
     ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///

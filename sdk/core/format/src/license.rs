@@ -7,7 +7,7 @@ use crate::MetadataError;
 /// Checks a text against the grammar of SPDX licence expressions and the list of licences.
 ///
 /// # Errors
-/// If the text breaks the grammar, or an id is not in the list.
+/// Returns an error if the text breaks the grammar, or if an id is not in the list.
 ///
 /// ```
 /// use htex_format::check_license;

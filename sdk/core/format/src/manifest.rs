@@ -27,8 +27,8 @@ pub const VERSION: &str = "1.1";
 /// All versions that this crate writes, from the lowest on.
 const VERSIONS: [&str; 2] = ["1.0", VERSION];
 
-/// The extension that a coded asset requires. The extension adds coded fields, and tables of
-/// conditions.
+/// The extension that a coded asset requires. This extension adds fields that are compressed by a
+/// range coder, and tables of conditions.
 pub const CODED: &str = "org.htex.coded/1";
 
 /// The extension of assets that are imported from the Penn Haptic Texture Toolkit.
@@ -343,7 +343,7 @@ pub struct Representation {
     /// Semantic version of the model that fitted the parameters.
     #[schemars(regex(pattern = SEMANTIC_VERSION))]
     pub model_version: String,
-    /// Parameter fields, in the order of the flat array.
+    /// Parameter fields, in the order in which the flat parameter array contains them.
     #[schemars(extend("uniqueItems" = true))]
     pub fields: Vec<StoredField>,
     /// The conditions for which the parameter block contains parameters, in the order of the block.
@@ -397,7 +397,7 @@ pub enum StoredAs {
     /// differences take fewer bits.
     Packed(Steps),
     /// Unsigned 8-bit integers `q`, predicted from the previous condition and compressed by a range
-    /// coder. Only coded assets, which require the extension `org.htex.coded/1`, have this storage.
+    /// coder. Only coded assets use this storage. They require the extension `org.htex.coded/1`.
     Coded(Steps),
 }
 
@@ -430,7 +430,8 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Representation {
-    /// Returns the error in decibels by which a program chooses among an asset's representations.
+    /// Returns the error, in decibels, that a program compares to choose among an asset's
+    /// representations.
     ///
     /// This is the error at the first condition, where a voice starts. The first condition has no
     /// measured error if, for example, it was interpolated between recorded conditions. The result

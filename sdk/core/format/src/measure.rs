@@ -48,7 +48,8 @@ pub enum By {
 pub struct MeasureRow {
     /// Key in JSON.
     pub key: &'static str,
-    /// JSON key of the measure's value from rendered samples: `samples_` followed by the key.
+    /// JSON key under which the measure is stored if it was computed from rendered samples:
+    /// `samples_` followed by the key.
     pub samples_key: &'static str,
     /// Definition, in one sentence.
     pub meaning: &'static str,
@@ -71,7 +72,7 @@ pub struct MeasureRow {
     /// Whether assets store the measure in `quality`.
     pub stored: bool,
     /// Whether `quality` must contain the measure. If this field and [`Self::left_out`] are both
-    /// set, `left_out` must also contain the measure.
+    /// set, the asset's `left_out` object must also contain the measure.
     pub required: bool,
     /// Whether assets also store the measure in `left_out`.
     pub left_out: bool,

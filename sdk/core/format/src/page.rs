@@ -19,7 +19,7 @@ stages are skipped.
 
 ";
 
-/// Generates the page of all rules: `spec/validation.md`.
+/// Generates `spec/validation.md`, the page that lists all rules.
 pub fn validation_page() -> String {
     let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
     for stage in STAGES {

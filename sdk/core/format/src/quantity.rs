@@ -147,8 +147,8 @@ impl Quantity {
     /// Returns the largest allowed level (RMS) of an asset, in the quantity's unit. The limit keeps
     /// samples within the range of 32-bit floats in any scene. The limits of velocity and
     /// displacement follow from the largest allowed acceleration. A 20 Hz vibration with this
-    /// acceleration reaches a velocity of 8.0e3 m/s and a displacement of 63 m. Each limit is the
-    /// next power of ten.
+    /// acceleration reaches a velocity of 8.0e3 m/s and a displacement of 63 m. Each limit is
+    /// rounded up to the next power of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,

@@ -141,7 +141,7 @@ impl Rights {
     /// file unchanged if the chunk would make it larger than 4 GiB.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn add_to_wav(&self, wav: &mut (impl Write + Seek)) -> io::Result<()> {
         let chunk = self.riff();
         if chunk.is_empty() {
@@ -165,7 +165,7 @@ impl Rights {
     /// is complete. Does nothing if `path` is a device or a pipe.
     ///
     /// # Errors
-    /// If a file cannot be read or written.
+    /// Returns an error if a file cannot be read or written.
     pub fn add_to_file(&self, path: &Path) -> io::Result<()> {
         if self.is_empty() || !std::fs::metadata(path)?.is_file() {
             return Ok(());
@@ -203,7 +203,7 @@ pub fn license_file(path: &Path) -> PathBuf {
 /// Reads the licence file next to `path`. Returns `None` if there is no such file.
 ///
 /// # Errors
-/// If the licence file cannot be read, is not a regular file or is too long.
+/// Returns an error if the licence file cannot be read, is not a regular file or is too long.
 pub fn read_license_file(path: &Path) -> io::Result<Option<String>> {
     match read_regular(&license_file(path), MOST_FILE_BYTES) {
         Ok(bytes) => Ok(Some(String::from_utf8_lossy(&bytes).into_owned())),

@@ -12,8 +12,8 @@ const DECIMALS_CODED: usize = 2;
 impl Manifest {
     /// Returns the manifest as a writer stores it: with the lowest version that defines its keys
     /// ([`Self::lowest_version`]), and with rounded numbers. Measures of agreement and
-    /// repeatability are rounded to four decimals; if the asset is coded, values in decibels are
-    /// rounded to two. Levels are rounded to nine significant digits. Applying this twice changes
+    /// repeatability are rounded to four decimals. In a coded asset, values in decibels are rounded
+    /// to two decimals. Levels are rounded to nine significant digits. Applying this twice changes
     /// nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();

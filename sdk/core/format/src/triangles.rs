@@ -92,8 +92,8 @@ const FLAT: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// If the triangles break a rule of section 2 of `spec/htex-1.md`. The error is the first broken
-/// rule, in the order of that section.
+/// Returns an error if the triangles break a rule of section 2 of `spec/htex-1.md`. The error is
+/// the first broken rule, in the order of that section.
 pub fn check_triangles(
     conditions: &[[f64; 2]],
     triangles: &[Triangle],

@@ -3,8 +3,8 @@
 //! place of a typed value.
 //!
 //! JSON is parsed only once: first the text becomes a JSON value without duplicate keys, and then
-//! this value becomes a Rust type. The same traversal yields the JSON pointers of errors and
-//! unknown keys.
+//! this value becomes a Rust type. The conversion to the Rust type also yields the JSON pointers of
+//! errors and unknown keys.
 //!
 //! The project has its own deserializer because serde_json accepts an array for a derived struct,
 //! and `null` for an optional key. With serde_json, htex would accept files that other readers of

@@ -21,8 +21,8 @@ impl Asset {
     /// ([`crate::round_parameters`]).
     ///
     /// # Errors
-    /// If the asset breaks a rule of the format, exceeds the default [`Limits`], or has parameters
-    /// that its fields cannot store.
+    /// Returns an error if the asset breaks a rule of the format, exceeds the default [`Limits`],
+    /// or has parameters that its fields cannot store.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let manifest = self.manifest.rounded();
         let mut findings = Findings::default();
@@ -64,7 +64,8 @@ impl Asset {
     /// Writes the asset to a file atomically: a reader sees either the old file or the new one.
     ///
     /// # Errors
-    /// [`WriteError::Io`] if the file cannot be written, and the errors of [`Self::to_bytes`].
+    /// Returns [`WriteError::Io`] if the file cannot be written, and the errors of
+    /// [`Self::to_bytes`].
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         write_file(path, &self.to_bytes()?)

@@ -1,5 +1,5 @@
-//! Writes the archive in the strict form of ZIP that the module `archive` requires. The same
-//! entries give the same bytes on every machine.
+//! Writes ZIP archives in the strict form that the module `archive` requires. The same entries give
+//! the same bytes on every machine.
 
 use std::io::{self, Write};
 

@@ -62,7 +62,7 @@ const MAX_SWEEP: usize = 1_000;
 /// Reads a descriptor from JSON and checks it. Every loader of models uses this function.
 ///
 /// # Errors
-/// [`DescriptorError`] if the text is not a valid descriptor.
+/// Returns a [`DescriptorError`] if the text is not a valid descriptor.
 pub fn read_descriptor(json: &str) -> Result<Descriptor, DescriptorError> {
     let descriptor: Descriptor = serde_json::from_str(json)
         .map_err(|error| DescriptorError::Json { what: plain(&error.to_string()) })?;

@@ -49,7 +49,7 @@ pub enum HostError {
     /// A file cannot be loaded as a model.
     #[error("cannot load {path}: {what}")]
     Load { path: String, what: String },
-    /// A library or module does not have a function of the model ABI.
+    /// A library or module lacks one of the functions of the model ABI.
     #[error("cannot load {path}: it has no `{name}`; it is not an htex model")]
     NoFunction {
         /// The file, or the entry of an asset.

@@ -22,7 +22,7 @@ use std::time::Duration;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmLimits {
-    /// Largest module, bytes. Default 16 MiB (this project's models have 0.2 to 0.5 MiB).
+    /// Largest module, bytes. Default 16 MiB (this project's models are 0.2 to 0.5 MiB in size).
     pub module_bytes: usize,
     /// Largest memory of one instance, bytes. Default 64 MiB.
     pub memory_bytes: usize,
@@ -38,7 +38,8 @@ pub struct WasmLimits {
     /// s.
     pub call: Duration,
     /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s. No device waits
-    /// that long for samples, and an endless loop still ends soon.
+    /// that long for samples, so the limit stops no useful call. It still ends an endless loop
+    /// soon.
     pub render: Duration,
     /// Maximum number of WASM instructions of one call, or `None` for no limit. Unlike a time
     /// limit, this limit stops the same calls on every machine. Default `None`: the time limits
@@ -50,8 +51,8 @@ pub struct WasmLimits {
     /// the host refuses the module.
     pub compile: Duration,
     /// Maximum memory for compiling a module, bytes. The limit applies only to
-    /// [`WasmCompiler::Program`]. Default 512 MiB, which suffices for every module whose estimated
-    /// time is within the default of `compile`.
+    /// [`WasmCompiler::Program`]. Default 512 MiB. This suffices for every module whose estimated
+    /// compilation time is within the default of `compile`.
     pub compile_bytes: usize,
     /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
@@ -85,7 +86,7 @@ pub struct WasmLimits {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmEngine {
-    /// Loading a module is an error. No thread, file or handler is created.
+    /// Every attempt to load a module returns an error. No thread, file or handler is created.
     Off,
     /// Modules run without signal handlers. Instead, the engine compares each memory access with
     /// the memory's bound. Without signal handlers, the engine also lacks some protections against
@@ -108,8 +109,8 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time for compilation and for all calls except the calls of voices. While the program runs,
-    /// the remaining time grows by a tenth of the elapsed time, up to this total. Each voice has a
+    /// Time for compilation and for all calls except calls to voices. While the program runs, the
+    /// remaining time grows by a tenth of the elapsed time, up to this total. Each voice has a
     /// separate allowance. The allowance starts at one second; each rendered sample adds ten times
     /// the sample's duration, up to one second in total.
     pub time: Duration,
@@ -227,10 +228,10 @@ impl WasmLimits {
 ///
 /// A cached file is machine code that this program runs, so three measures protect the cache.
 /// First, the program creates the folder with permissions for this user only (mode 0700). Second,
-/// the program does not use a folder that belongs to another user or to which other users may
-/// write. Third, the program authenticates each file with a key that only this user can read
-/// (`wasm.key` in the user's configuration folder). If a file is damaged, or another version wrote
-/// it, the program compiles the module again.
+/// the program uses the folder only if it belongs to this user and no other user may write to it.
+/// Third, the program authenticates each file with a key that only this user can read (`wasm.key`
+/// in the user's configuration folder). If a cached file is damaged, or another version wrote it,
+/// the program compiles the module again.
 ///
 /// ```
 /// use htex_host::{Search, WasmCache, WasmLimits};

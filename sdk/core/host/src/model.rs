@@ -76,7 +76,8 @@ impl LoadedModel {
     /// limits. A native library runs with all the rights of this program.
     ///
     /// # Errors
-    /// If the file is neither a WASM module nor a native library, or if its model violates the ABI.
+    /// Returns an error if the file is neither a WASM module nor a native library, or if its model
+    /// violates the ABI.
     pub fn from_file(path: &Path) -> Result<Self, HostError> {
         Self::from_file_within(path, &WasmLimits::default())
     }
@@ -125,8 +126,8 @@ impl LoadedModel {
     /// the module; error messages contain this name.
     ///
     /// # Errors
-    /// When the bytes are not a module, its model violates the ABI, or this program was built
-    /// without the `wasm` feature.
+    /// Returns an error if the bytes are not a module, its model violates the ABI, or this program
+    /// was built without the `wasm` feature.
     pub fn from_wasm_bytes(
         name: &str,
         bytes: &[u8],
@@ -202,8 +203,8 @@ impl LoadedModel {
     /// ```
     ///
     /// # Errors
-    /// [`HostError::Call`] if the model cannot describe the spectrum. Models that follow the motion
-    /// also return this error if the speed or the force is negative or not finite.
+    /// Returns [`HostError::Call`] if the model cannot describe the spectrum. Models that follow
+    /// the motion also return this error if the speed or the force is negative or not finite.
     #[cfg(feature = "fit")]
     pub fn fit(&self, input: &FitInput<'_>) -> Result<Fit, HostError> {
         let call = "fit";
@@ -228,8 +229,8 @@ impl LoadedModel {
     /// has unit RMS on the 5 Hz grid in the band.
     ///
     /// # Errors
-    /// [`HostError::Call`] if the model refuses the arguments, [`HostError::Broken`] if a magnitude
-    /// is negative or not finite.
+    /// Returns [`HostError::Call`] if the model refuses the arguments, and [`HostError::Broken`] if
+    /// a magnitude is negative or not finite.
     pub fn magnitude(
         &self,
         parameters: &[f64],
@@ -341,7 +342,7 @@ impl LoadedModel {
     /// instance. Returns `None` for a model that is not a WASM module.
     ///
     /// # Errors
-    /// [`HostError::Call`] if the model returns an error.
+    /// Returns [`HostError::Call`] if the model returns an error.
     pub fn two_voices(
         &self,
         parameters: &[f64],
@@ -360,7 +361,7 @@ impl LoadedModel {
     /// Returns whether the model has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
     ///
     /// # Errors
-    /// [`HostError::Broken`] if the model returns neither 0 nor 1.
+    /// Returns [`HostError::Broken`] if the model returns neither 0 nor 1.
     pub fn has_extension(&self, id: &str) -> Result<bool, HostError> {
         match self.check("extension", self.raw.extension(id.as_bytes()))? {
             0 => Ok(false),

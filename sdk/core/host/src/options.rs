@@ -10,7 +10,8 @@ impl LoadedModel {
     /// choice. Each option that is not in `given` gets its default value.
     ///
     /// # Errors
-    /// [`HostError::UnknownOption`], or [`HostError::OptionValue`] with the allowed values.
+    /// Returns [`HostError::UnknownOption`] if the model has no option of a given name, or
+    /// [`HostError::OptionValue`] with the allowed values if a value is not allowed.
     ///
     /// ```
     /// use htex_host::{HostError, Registry};

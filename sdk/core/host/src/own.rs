@@ -1,4 +1,5 @@
-//! Models that the program itself adds: converts types that implement [`Model`] to objects.
+//! Converts types that implement [`Model`] to model objects, for models that the program itself
+//! adds.
 
 use std::sync::Arc;
 

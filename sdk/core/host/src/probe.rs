@@ -44,7 +44,7 @@ impl LoadedModel {
     /// may be too short. Returns the number of parameters of the fit.
     ///
     /// # Errors
-    /// If the model returns an error.
+    /// Returns an error if the model returns one.
     #[cfg(feature = "fit")]
     pub fn fit_into(
         &self,
@@ -58,7 +58,7 @@ impl LoadedModel {
     /// Writes the shape's magnitude at each frequency to `magnitude`.
     ///
     /// # Errors
-    /// If the model returns an error.
+    /// Returns an error if the model returns one.
     pub fn magnitude_into(
         &self,
         parameters: &[f64],
@@ -74,7 +74,7 @@ impl LoadedModel {
     /// too short.
     ///
     /// # Errors
-    /// If the model returns an error.
+    /// Returns an error if the model returns one.
     pub fn interpolate_into(
         &self,
         sets: &[f64],
@@ -88,7 +88,7 @@ impl LoadedModel {
     /// Writes the descriptor to `out`, which may be too short. Returns the descriptor's length.
     ///
     /// # Errors
-    /// If the model returns an error.
+    /// Returns an error if the model returns one.
     pub fn descriptor_into(&self, out: &mut [u8]) -> Result<usize, HostError> {
         self.check("descriptor", self.raw().descriptor(out))
     }
@@ -104,7 +104,7 @@ impl ModelVoice {
     /// Renders without checking the samples.
     ///
     /// # Errors
-    /// If the model returns an error.
+    /// Returns an error if the model returns one.
     pub fn render_into(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let answer = self.raw_mut().render(out);
         self.done("voice_render", answer)

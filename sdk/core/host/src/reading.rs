@@ -31,11 +31,11 @@ impl LoadedModel {
     /// edge. If the model has its own sample rate, the result includes the effect of resampling to
     /// a high rate. The RMS of the result is then [`Self::played_part`] instead of 1.
     ///
-    /// A voice plays its model's magnitude as a density. If the model keeps energies
-    /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
+    /// A voice plays its model's magnitude as a density. If the model's parameters determine the
+    /// level ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
     /// [sharpened](sharpen). For models with spectral lines ([`Self::has_lines`]), this function
-    /// returns the model's magnitude. For sums of sinusoids, the model's magnitude is the magnitude
-    /// that one measures within the main lobe of the window function.
+    /// returns the model's magnitude. For a sum of sinusoids, this is the magnitude that one
+    /// measures within the main lobe of the window function.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].

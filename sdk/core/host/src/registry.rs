@@ -128,8 +128,8 @@ impl Registry {
     /// Returns the models that a search finds.
     ///
     /// # Errors
-    /// If one of the search's `files` or `modules` cannot be loaded, or one of its `dirs` cannot be
-    /// read.
+    /// Returns an error if one of the search's `files` or `modules` cannot be loaded, or if one of
+    /// its `dirs` cannot be read.
     pub fn search(search: &Search) -> Result<Self, HostError> {
         search.run()
     }
@@ -145,7 +145,8 @@ impl Registry {
     }
 
     /// Returns a registry for one asset. The modules that a program adds to the new registry share
-    /// the limits [`WasmLimits::asset`], and also count towards the total of this registry.
+    /// the limits [`WasmLimits::asset`]. They also count towards the total of the registry from
+    /// which the new registry was made.
     #[must_use]
     pub fn of_asset(self) -> Self {
         Self { sandbox: self.sandbox.of_asset(), ..self }
@@ -207,7 +208,7 @@ impl Registry {
     /// ```
     ///
     /// # Errors
-    /// When the descriptor is invalid, or longer than 1 MiB in JSON.
+    /// Returns an error if the descriptor is invalid, or longer than 1 MiB in JSON.
     pub fn add_model<M: Model>(&mut self) -> Result<(), HostError> {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
@@ -235,7 +236,7 @@ impl Registry {
     /// [`Self::add_model`].
     ///
     /// # Errors
-    /// When the descriptor is invalid, or longer than 1 MiB in JSON.
+    /// Returns an error if the descriptor is invalid, or longer than 1 MiB in JSON.
     pub fn add_runtime_model(
         &mut self,
         written_in: &str,
@@ -252,7 +253,7 @@ impl Registry {
     /// refuses native libraries.
     ///
     /// # Errors
-    /// When the bytes are not a module, or its model violates the ABI.
+    /// Returns an error if the bytes are not a module, or if its model violates the ABI.
     pub fn add_wasm_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), HostError> {
         let model = LoadedModel::from_wasm_in(name, bytes, &self.sandbox)?;
         self.add(Rank::Embedded, model);

@@ -61,13 +61,13 @@ pub trait RuntimeModel: Send + Sync + 'static {
     /// model follows the motion.
     ///
     /// # Errors
-    /// When the model cannot describe the spectrum.
+    /// Returns an error if the model cannot describe the spectrum.
     fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error>;
 
     /// Computes the magnitude, as [`htex_model::Model::magnitude`] does.
     ///
     /// # Errors
-    /// When the parameters describe no spectrum.
+    /// Returns an error if the parameters describe no spectrum.
     fn magnitude(
         &self,
         parameters: &Values<'_>,
@@ -80,7 +80,7 @@ pub trait RuntimeModel: Send + Sync + 'static {
     /// interpolates every number linearly.
     ///
     /// # Errors
-    /// When the sets cannot be interpolated.
+    /// Returns an error if the sets cannot be interpolated.
     fn interpolate(
         &self,
         sets: &[Values<'_>],
@@ -98,7 +98,7 @@ pub trait RuntimeModel: Send + Sync + 'static {
     /// Creates a voice, as [`htex_model::Model::voice`] does.
     ///
     /// # Errors
-    /// When a voice cannot be created with these parameters at this rate.
+    /// Returns an error if a voice cannot be created with these parameters at this rate.
     fn voice(
         &self,
         parameters: &Values<'_>,
@@ -120,17 +120,17 @@ pub trait RuntimeVoice: Send {
     /// Fills `out` with the next samples.
     ///
     /// # Errors
-    /// When the voice cannot produce samples. The host then plays zeros.
+    /// Returns an error if the voice cannot produce samples. The host then plays zeros.
     fn render(&mut self, out: &mut [f32]) -> Result<(), Error>;
 
     /// Changes to other parameters, as [`htex_model::Voice::retune`] does.
     ///
     /// # Errors
-    /// When the voice cannot change to these parameters.
+    /// Returns an error if the voice cannot change to these parameters.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 
-    /// Sets the motion, as [`htex_model::MotionVoice::set_motion`] does. The host calls it only for
-    /// models that follow the motion.
+    /// Sets the motion, as [`htex_model::MotionVoice::set_motion`] does. The host calls this method
+    /// only for models that follow the motion.
     fn set_motion(&mut self, _motion: Motion) {}
 }
 

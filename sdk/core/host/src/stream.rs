@@ -29,7 +29,7 @@ impl<S> Stream<S> {
     /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
-    /// When one rate cannot be converted to the other.
+    /// Returns an error if one rate cannot be converted to the other.
     pub fn from_source(
         source: S,
         source_rate_hz: f64,
@@ -81,8 +81,8 @@ impl Stream {
     /// Creates a voice of `model`, and a resampler to `rate_hz` if needed.
     ///
     /// # Errors
-    /// When the model refuses the parameters or the rate, or its own rate cannot be converted to
-    /// `rate_hz`.
+    /// Returns an error if the model refuses the parameters or the rate, or if its own rate cannot
+    /// be converted to `rate_hz`.
     pub fn new(
         model: &LoadedModel,
         parameters: &[f64],
@@ -112,7 +112,7 @@ impl Stream {
     /// Changes to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses the parameters. The stream then continues unchanged.
+    /// Returns an error if the model refuses the parameters. The stream then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         self.source.retune(parameters)
     }

@@ -41,8 +41,8 @@ const RUN_IN_S: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Synthesis {
-    /// The model's voice renders all samples. They do not repeat, and the spectrum follows the
-    /// motion.
+    /// The model's voice renders all samples. The samples do not repeat, and the spectrum follows
+    /// the motion.
     #[default]
     Streamed,
     /// A part of the voice, 0.1 to 60 s long, which is rendered once and repeated with a
@@ -132,8 +132,8 @@ impl StillSound {
     /// for [`Synthesis::Streamed`].
     ///
     /// # Errors
-    /// [`HostError::Synthesis`] if the length of the loop or filter is out of range. Other errors
-    /// if the model refuses the parameters or the rate, or cannot render.
+    /// Returns [`HostError::Synthesis`] if the length of the loop or filter is out of range.
+    /// Returns another error if the model refuses the parameters or the rate, or cannot render.
     pub fn new(
         synthesis: Synthesis,
         model: &LoadedModel,

@@ -33,8 +33,8 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 /// ```
 ///
 /// # Errors
-/// The first error that a model returns. The samples of that voice are zero, and other voices
-/// continue.
+/// Returns the first error that a model returns. The samples of the failed voice are zero, and the
+/// other voices continue.
 pub fn render_together<'a>(
     voices: impl IntoIterator<Item = &'a mut ModelVoice>,
     frames: usize,

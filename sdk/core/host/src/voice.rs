@@ -47,7 +47,7 @@ impl ModelVoice {
     /// ABI.
     ///
     /// # Errors
-    /// When the model fails. `out` is then filled with zeros.
+    /// Returns an error when the model fails. `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let status = self.raw.render(out);
         self.done("voice_render", status)
@@ -84,23 +84,23 @@ impl ModelVoice {
         self.model.broken("voice_render", what)
     }
 
-    /// Changes to other parameters without a click.
+    /// Switches to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses the parameters. The voice then continues unchanged.
+    /// Returns an error when the model refuses the parameters. The voice then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         let status = self.raw.retune(parameters);
         self.done("voice_retune", status)
     }
 
-    /// Changes to parameters interpolated between several sets. `sets` contains these parameter
+    /// Switches to parameters interpolated between several sets. `sets` contains these parameter
     /// sets, concatenated. `buffer` receives the interpolated set, which has at most
     /// [`LoadedModel::most_parameters`] numbers. The voice interpolates in its own instance,
     /// without a lock, and without allocation if the model follows the ABI.
     ///
     /// # Errors
-    /// When the model cannot interpolate, or `buffer` is too short. The voice then continues
-    /// unchanged.
+    /// Returns an error when the model cannot interpolate, or `buffer` is too short. The voice then
+    /// continues unchanged.
     pub fn retune_mix(
         &mut self,
         sets: &[f64],
@@ -123,8 +123,8 @@ impl ModelVoice {
     /// follows the ABI.
     ///
     /// # Errors
-    /// When a number is not finite or out of range, or the model refuses it. The voice then
-    /// continues unchanged.
+    /// Returns an error when a number is not finite or out of range, or the model refuses it. The
+    /// voice then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let call = "motion_1_set";
         let refused =
@@ -137,7 +137,7 @@ impl ModelVoice {
     /// numbers. With this function, a checker tests which numbers the model refuses.
     ///
     /// # Errors
-    /// The error that the model returns.
+    /// Returns the model's error.
     pub fn set_any_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let status = self.raw.set_motion(motion);
         self.done("motion_1_set", status)
@@ -149,12 +149,12 @@ impl ModelVoice {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the voice inside the model. This value remains and keeps the
-    /// voice's handle. With this function, a checker tests whether the model refuses a freed
-    /// handle. Apps free a voice by dropping it.
+    /// For checkers of models: frees the voice inside the model. This value continues to exist and
+    /// keeps the handle of the freed voice. With this function, a checker tests whether the model
+    /// refuses a freed handle. Apps free a voice by dropping it.
     ///
     /// # Errors
-    /// The error that the model returns. A second call must return the error for an unknown handle.
+    /// Returns the model's error. A second call must return the error for an unknown handle.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
         let status = self.raw.free();
         self.done("voice_free", status)

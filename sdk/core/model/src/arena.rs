@@ -1,10 +1,10 @@
 //! The memory allocator of a WASM module: blocks in size classes, each with a list of freed blocks.
 //! This allocator has a tenth of the code of a general allocator.
 //!
-//! There are four size classes per octave, so a block is at most a quarter larger than requested,
-//! apart from rounding up to a multiple of 16 bytes. A freed block is reused only for blocks of the
-//! same class. This restriction costs models little, because they allocate the same sizes again and
-//! again.
+//! There are four size classes for each doubling of the size, so a block is at most a quarter
+//! larger than requested, apart from rounding up to a multiple of 16 bytes. A freed block is reused
+//! only for blocks of the same class. This restriction costs models little, because they allocate
+//! the same sizes again and again.
 
 use core::alloc::Layout;
 use core::ptr::null_mut;

@@ -32,8 +32,8 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
 /// Makes a band from its two edges, hertz.
 ///
 /// # Errors
-/// If the lower edge is not above 0 Hz, the upper edge is not above the lower edge, or the upper
-/// edge is above 1 MHz.
+/// Returns an error if the lower edge is not above 0 Hz, the upper edge is not above the lower
+/// edge, or the upper edge is above 1 MHz.
 pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });
@@ -50,7 +50,7 @@ pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
 /// Checks the sample rate of a signal or a voice, hertz.
 ///
 /// # Errors
-/// If the rate is not from 1 Hz to 10 MHz.
+/// Returns an error if the rate is not from 1 Hz to 10 MHz.
 pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
     if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
@@ -61,8 +61,8 @@ pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
 /// Checks that all numbers of an argument are finite.
 ///
 /// # Errors
-/// If a number is not finite. The message names the argument and the index of the first such
-/// number.
+/// Returns an error if a number is not finite. The message names the argument and the index of the
+/// first such number.
 pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
@@ -73,8 +73,9 @@ pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
 /// Checks the input of a fit against the model's descriptor.
 ///
 /// # Errors
-/// If a number is not finite, the spectrum is too short, its frequencies do not ascend, a magnitude
-/// is negative, the sample rate is invalid, or an option is missing or out of range.
+/// Returns an error if a number is not finite, the spectrum is too short, its frequencies do not
+/// ascend, a magnitude is negative, the sample rate is invalid, or an option is missing or out of
+/// range.
 pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<(), Error> {
     check_recording(input)?;
     check_options(input.options, descriptor)
@@ -83,7 +84,7 @@ pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<
 /// Checks the result of a model's fit.
 ///
 /// # Errors
-/// If a parameter is out of range, or the level is not a valid number.
+/// Returns an error if a parameter is out of range, or the level is not a valid number.
 pub fn check_fit(fit: &Fit, descriptor: &dyn Fields) -> Result<(), Error> {
     Values::read(descriptor, &fit.parameters)?;
     if fit.level_rms.is_finite() && fit.level_rms >= 0.0 {
@@ -161,7 +162,8 @@ type Interpolation<'a> = dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Resu
 /// the length of the result.
 ///
 /// # Errors
-/// If weights or sets are invalid, if the model returns an error, or if its result is invalid.
+/// Returns an error if weights or sets are invalid, if the model returns an error, or if its result
+/// is invalid.
 pub fn interpolate(
     descriptor: &dyn Fields,
     own: &Interpolation<'_>,

@@ -1,6 +1,6 @@
-//! Replaces the parts of the standard library that this crate needs, on targets that have no
-//! standard library and are not WASM, such as microcontrollers. On these targets, programs call
-//! models only through the Rust traits.
+//! Replacements for the parts of the standard library that this crate needs. They are for targets
+//! that have no standard library and are not WASM, such as microcontrollers. On these targets,
+//! programs call models only through the Rust traits.
 
 use core::cell::RefMut;
 use core::marker::PhantomData;

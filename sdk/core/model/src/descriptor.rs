@@ -92,8 +92,8 @@ pub struct Field {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value that the field gets in an asset from an earlier minor version of the model, if that
-    /// version did not have the field. Only for scalars.
+    /// Value of the field in an asset from an earlier minor version of the model that did not have
+    /// the field. Only for scalars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.

@@ -30,7 +30,7 @@ type GroupSamples = [f32; GROUP];
 /// be stable after every step. All methods except [`new`](Self::new) run on the render thread and
 /// must not allocate.
 pub trait MovingFilter: Sized + Send + 'static {
-    /// Index of the parameter field that contains the filter's sample rate, hertz.
+    /// Index of the parameter field that contains the filter's sample rate in hertz.
     const RATE_FIELD: usize;
 
     /// Makes the filter that the parameters describe, and returns it with its level. The level is
@@ -38,16 +38,17 @@ pub trait MovingFilter: Sized + Send + 'static {
     /// has a magnitude of 1 in each bin.
     ///
     /// # Errors
-    /// If the filter is not stable, or has no finite energy in the band.
+    /// Returns an error if the filter is not stable, or has no finite energy in the band.
     fn new(parameters: &Values<'_>, band: Band, passed: &PassedPower)
     -> Result<(Self, f64), Error>;
 
     /// Sets the target: this filter becomes the target filter after `steps` calls of
-    /// [`step`](Self::step). Returns the level of the target, as [`new`](Self::new) does.
+    /// [`step`](Self::step). Returns the level of the target filter, computed as in
+    /// [`new`](Self::new).
     ///
     /// # Errors
-    /// If the target is not stable, or has no finite energy in the band. The filter then continues
-    /// unchanged.
+    /// Returns an error if the target is not stable, or has no finite energy in the band. The
+    /// filter then continues unchanged.
     fn set_target(
         &mut self,
         parameters: &Values<'_>,
@@ -81,7 +82,7 @@ pub struct FilteredVoice<F> {
     pub noise: GaussianNoise,
     /// The filter.
     pub filter: F,
-    /// The filters after `filter` that limit the output to the band.
+    /// The filters that run after `filter` and limit the output to the band.
     pub edges: Pipeline,
     rate_hz: f64,
     /// The part of the power that passes `edges`.
@@ -100,8 +101,8 @@ impl<F: MovingFilter> FilteredVoice<F> {
     /// Makes a voice whose samples have unit RMS.
     ///
     /// # Errors
-    /// If `rate_hz` is not the sample rate that the parameters contain, or if [`MovingFilter::new`]
-    /// fails.
+    /// Returns an error if `rate_hz` is not the sample rate in the parameters, or if
+    /// [`MovingFilter::new`] fails.
     pub fn new(
         parameters: &Values<'_>,
         band: Band,
@@ -145,12 +146,13 @@ impl<F: MovingFilter> FilteredVoice<F> {
         self.gain
     }
 
-    /// Returns how many samples of the last rendered group are already in the caller's blocks.
+    /// Returns how many samples of the last rendered group were already copied to the caller's
+    /// blocks.
     pub fn taken(&self) -> usize {
         self.taken
     }
 
-    /// Returns whether no change of parameters is in progress.
+    /// Returns whether the parameters are constant, i.e. no gradual change is in progress.
     pub fn is_steady(&self) -> bool {
         self.ramp_left == 0
     }
@@ -265,7 +267,7 @@ fn gain(rate_hz: f64, level: f64) -> f64 {
 /// Checks a filter's level, by which the model divides magnitudes and samples.
 ///
 /// # Errors
-/// If the level is not finite, or not above 0.
+/// Returns an error if the level is not finite, or not above 0.
 pub fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);

@@ -13,7 +13,7 @@ pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Value
 /// in the sets. A set with weight 1 is copied unchanged. Does not allocate.
 ///
 /// # Errors
-/// If the sets differ in length.
+/// Returns an error if the sets differ in length.
 pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Result<(), Error> {
     if let Some(set) = sole(sets, weights) {
         out.extend(set.flat());

@@ -32,8 +32,8 @@ impl Motion {
     /// Checks that every number is finite and within the limits of the extension.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) if a number is not finite or out of
-    /// range.
+    /// Returns [`InvalidArgument`](crate::Status::InvalidArgument) if a number is not finite or out
+    /// of range.
     ///
     /// ```
     /// let motion = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -84,7 +84,8 @@ impl FitCondition {
     /// Converts speed and force from the two numbers of the ABI; NaN means unknown.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) if a number is infinite or out of range.
+    /// Returns [`InvalidArgument`](crate::Status::InvalidArgument) if a number is infinite or out
+    /// of range.
     pub fn from_numbers(speed_mm_s: f64, force_n: f64) -> Result<Self, Error> {
         let known = |name, x: f64, most| {
             if x.is_nan() {

@@ -1,10 +1,11 @@
 //! The extension `htex.motion/1`: voices receive the motion of the finger, and fits receive the
 //! speed and force of the recording.
 //!
-//! For a model without the extension, the host scales frequencies with the speed and the level with
-//! the force. A model with the extension itself scales the frequencies and the level. Its sound can
-//! also depend on the finger's position, e.g. for stick-slip, or for a surface that sounds the same
-//! at the same place. Native libraries and WASM modules can both have the extension.
+//! For a model without the extension, the host scales the frequencies with the speed, and the level
+//! with the force. A model with the extension itself scales the frequencies and the level. Its
+//! sound can also depend on the finger's position, e.g. for stick-slip, or for a surface that
+//! sounds the same at the same place. Native libraries and WASM modules can both have the
+//! extension.
 
 /// Largest speed of a finger, mm/s, in either direction.
 pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;

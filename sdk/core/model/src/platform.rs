@@ -19,7 +19,7 @@ mod here {
         static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
     }
 
-    /// A mutex that ignores poisoning, for data that a model's voices and calls share.
+    /// A mutex that ignores poisoning, for data that several voices or calls of a model share.
     pub struct Lock<T>(Mutex<T>);
 
     impl<T> Lock<T> {
@@ -76,7 +76,7 @@ mod here {
 
     static LAST_ERROR: Lock<String> = Lock::new(String::new());
 
-    /// A lock for data that a model's voices and calls share.
+    /// A lock for data that several voices or calls of a model share.
     pub struct Lock<T>(RefCell<T>);
 
     // SAFETY: a module has one thread. It imports nothing, so its memory is not shared.

@@ -36,7 +36,7 @@ impl<'a, T> Input<'a, T> {
     /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
-    /// `pointer` is null, or `len` values can be read at `pointer` for `'a`.
+    /// `pointer` must be null, or `len` values must be readable at `pointer` for `'a`.
     pub unsafe fn new(pointer: *const T, len: usize) -> Self {
         // C callers may pass null for an empty array, but a slice must not be null.
         if len == 0 {
@@ -67,8 +67,8 @@ impl<'a, T> Output<'a, T> {
     /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
-    /// `pointer` is null, or it points to `len` initialised values that can be written for `'a`,
-    /// with exclusive access.
+    /// `pointer` must be null, or it must point to `len` initialised values that can be written for
+    /// `'a`, with exclusive access.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
         if len == 0 {
             return Self(Some(&mut []));
@@ -326,8 +326,8 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// See [`crate::abi::FreeFn`].
 ///
 /// # Safety
-/// `pointer` is null, or [`alloc`](alloc()) returned it for the same `len` and it was not freed
-/// since.
+/// `pointer` must be null, or it must come from a call of [`alloc`](alloc()) with the same `len`
+/// and must not have been freed since.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
     if let (false, Some(layout)) = (pointer.is_null(), layout(len)) {
         // SAFETY: guaranteed by the caller; the allocation had the same layout.
@@ -349,8 +349,8 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
     with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
-/// See [`crate::abi::ExtensionFn`]. `motion` is true if the model has the extension
-/// `htex.motion/1`.
+/// Returns 1 if the model has the extension `id`, otherwise 0; see [`crate::abi::ExtensionFn`].
+/// `motion` says whether the model has the extension `htex.motion/1`.
 pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
     let is = |known: &str| id.0 == Some(known.as_bytes());
     let voices = is(VoicesTable::ID) && !cfg!(target_family = "wasm");

@@ -22,7 +22,7 @@ pub struct StaticDescriptor {
     pub version: &'static str,
     /// One sentence that says which properties of a spectrum the model stores.
     pub summary: &'static str,
-    /// Parameter fields, in the order of the flat array.
+    /// Parameter fields, in the order in which the flat parameter array contains them.
     pub fields: &'static [StaticField],
     /// Fit options, in the order in which a fit receives their values.
     pub options: &'static [StaticOption],
@@ -49,8 +49,8 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value that the field gets in an asset from an earlier minor version of the model, if that
-    /// version did not have the field. Only for scalars.
+    /// Value of the field in an asset from an earlier minor version of the model that did not have
+    /// the field. Only for scalars.
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
     pub usual: Option<UsualRange>,
@@ -168,8 +168,8 @@ impl StaticField {
         Self { store, ..self }
     }
 
-    /// Sets the value that the field gets in an asset from an earlier minor version of the model,
-    /// if that version did not have the field. Only for scalars.
+    /// Sets the field's value in an asset from an earlier minor version of the model that did not
+    /// have the field. Only for scalars.
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }

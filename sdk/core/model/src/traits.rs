@@ -26,7 +26,7 @@ pub struct FitInput<'a> {
     /// its option.
     pub options: &'a [f64],
     /// Speed and force of the recording. Both are unknown if the model does not have the extension
-    /// `htex.motion/1`. Each is also unknown if the host does not know it.
+    /// `htex.motion/1`. The speed or the force is also unknown if the host itself does not know it.
     pub condition: FitCondition,
 }
 
@@ -239,8 +239,8 @@ pub trait Model: 'static {
     /// Finds the parameters that describe a spectrum. The same input gives the same result.
     ///
     /// # Errors
-    /// [`crate::Status::CannotFit`] if the model cannot describe the spectrum, e.g. a spectrum that
-    /// is zero everywhere.
+    /// Returns [`crate::Status::CannotFit`] if the model cannot describe the spectrum, e.g. a
+    /// spectrum that is zero everywhere.
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
     /// Writes the magnitude of the shape at each frequency in `frequency_hz`. The shape has unit
@@ -248,7 +248,7 @@ pub trait Model: 'static {
     /// must not depend on which other frequencies the call contains.
     ///
     /// # Errors
-    /// If the parameters describe no spectrum in this band.
+    /// Returns an error if the parameters describe no spectrum in this band.
     fn magnitude(
         parameters: &Values<'_>,
         band: Band,
@@ -261,7 +261,8 @@ pub trait Model: 'static {
     /// to eight sets on the render thread: `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// If the sets cannot be interpolated, e.g. because their lists differ in length.
+    /// Returns an error if the sets cannot be interpolated, e.g. because their lists differ in
+    /// length.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -279,7 +280,7 @@ pub trait Model: 'static {
     /// which [`Self::voice_rate_hz`] returned. `seed` selects the voice's random numbers.
     ///
     /// # Errors
-    /// If the model cannot make a voice of these parameters at this rate.
+    /// Returns an error if the model cannot make a voice of these parameters at this rate.
     fn voice(
         parameters: &Values<'_>,
         band: Band,
@@ -307,7 +308,7 @@ pub trait Model: 'static {
 ///
 /// # Limits
 ///
-/// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If a voice
+/// [`render`](Self::render) cannot fail. A voice that cannot continue must write zeros. If a voice
 /// panics, the content of `out` is undefined.
 ///
 /// The example of [`Model`] implements this trait. Models that play noise with a given spectrum
@@ -337,6 +338,7 @@ pub trait Voice: Send + 'static {
     /// no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// If the voice cannot change to these parameters. It then continues unchanged.
+    /// Returns an error if the voice cannot change to these parameters. It then continues
+    /// unchanged.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 }

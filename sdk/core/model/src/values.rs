@@ -118,8 +118,9 @@ impl<'a> Values<'a> {
     /// Reads an array that contains exactly one parameter set.
     ///
     /// # Errors
-    /// If a field is missing, too long, out of range or not finite, or if numbers follow the last
-    /// field. The error message names the field, or states how many numbers follow the last field.
+    /// Returns an error if a field is missing, too long, out of range or not finite, or if numbers
+    /// follow the last field. The error message names the field, or states how many numbers follow
+    /// the last field.
     pub fn read(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
@@ -136,7 +137,7 @@ impl<'a> Values<'a> {
     /// Reads the parameter set at the start of an array, and returns it with its length.
     ///
     /// # Errors
-    /// If a field is missing, too long, out of range or not finite.
+    /// Returns an error if a field is missing, too long, out of range or not finite.
     pub fn read_first(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<(Self, usize), Error> {
         if descriptor.count() > MAX_FIELDS {
             return Err(Error::parameters(text![

@@ -1,8 +1,8 @@
 //! Serves a folder of files, such as the studio, to browsers on this machine only.
 //!
-//! The server reads all files of the folder when it starts, so no request can name a file on disk.
-//! The server refuses folders that contain links. Such a folder may come from another person, and
-//! that person's scripts could read the files to which the links point.
+//! The server reads all files of the folder into memory when it starts, so no request can make it
+//! open a file on disk. The server refuses folders that contain links. Such a folder may come from
+//! another person, and that person's scripts could read the files to which the links point.
 //!
 //! The address is `http://NAME.localhost:PORT/`. NAME is a keyed hash of the folder, and only this
 //! user can read the key. A browser keeps service workers and stored data separately for each name.
@@ -81,8 +81,8 @@ impl ServedFolder {
     /// key. A folder has the same host name each time it is served with the same key.
     ///
     /// # Errors
-    /// If the folder has no `index.html`, if one of its files is a link, cannot be read or is too
-    /// large, or if the port is taken.
+    /// Returns an error if the folder has no `index.html`, if one of its files is a link, cannot be
+    /// read or is too large, or if the port is taken.
     pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, LabError> {
         let mut files = BTreeMap::new();
         read(&OwnFolder::new(folder), "", 0, &mut files)?;

@@ -1,11 +1,12 @@
 //! The server of a page. It listens only on 127.0.0.1.
 //!
 //! Any program on this machine may connect, but other programs cannot delay the tab that owns the
-//! page. `hyper` runs in a separate runtime with one thread, and passes a request on before the
-//! request's body arrives. The gate checks the head of the request. The server then reads the body,
-//! up to 4096 bytes. Head and body each have a deadline of one second. At most 64 connections are
-//! open. If 64 connections are open, a new connection replaces the oldest one that has not passed
-//! the gate. If all have passed the gate, the new connection replaces the oldest of all.
+//! page. `hyper` runs in a separate runtime with one thread. It passes each request to the gate
+//! before the request's body arrives. The gate decides from the head of the request whether to
+//! refuse it. The server then reads the body, up to 4096 bytes. Head and body each have a deadline
+//! of one second. At most 64 connections are open. If 64 connections are open, a new connection
+//! replaces the oldest one that has not passed the gate. If all have passed the gate, the new
+//! connection replaces the oldest of all.
 //!
 //! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
 //! read a request's body before the gate could refuse the request. It also has no deadlines, and

@@ -42,7 +42,8 @@ impl Calibration {
     /// with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`LabError::File`] if the file cannot be read, or does not contain a matrix of full rank.
+    /// Returns [`LabError::File`] if the file cannot be read, or does not contain a matrix of full
+    /// rank.
     pub fn read(path: &Path) -> Result<Self, LabError> {
         in_calibration(path, text_of(path).and_then(|text| Self::from_text(path, &text)))
     }

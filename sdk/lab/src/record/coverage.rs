@@ -1,5 +1,5 @@
 //! Measures how much of a take is usable: the share of time during which the finger slides on its
-//! target, and the number of sweeps.
+//! target (the requested speed and force), and the number of sweeps.
 //!
 //! A sweep is one stroke of the finger over the surface. The spectrum of a take uses only the
 //! middles of its sweeps. In these middles the finger may be on target, even if the finger is
@@ -86,11 +86,11 @@ impl Target {
 /// How much of a take is usable. Each share is a fraction of the take's length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share of time in which the finger slides on its target. Three conditions must hold. All
-    /// three use means over 50 ms. The friction is at least half its mean over the take. The speed
-    /// is at least half the target speed, and exceeds the target speed by at most the tolerance.
-    /// The force is within the tolerance of its target. If there is no target for the speed or the
-    /// force, the condition for that quantity always holds.
+    /// Share of time in which the finger slides on its target. Three conditions must hold. Each
+    /// condition is evaluated on means over 50 ms. The friction is at least half its mean over the
+    /// take. The speed is at least half the target speed, and exceeds the target speed by at most
+    /// the tolerance. The force is within the tolerance of its target. If there is no target for
+    /// the speed or the force, the condition for that quantity always holds.
     pub on_target: f64,
     /// Share of time in which the finger slides.
     pub sliding: f64,

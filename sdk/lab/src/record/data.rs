@@ -162,8 +162,8 @@ impl TakeHeader {
     /// Reads a header from JSON.
     ///
     /// # Errors
-    /// A text that states what is wrong: the header has another version, unknown keys, or values
-    /// that no session writes.
+    /// Returns a text that states what is wrong: the header has another version, unknown keys, or
+    /// values that no session writes.
     pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {

@@ -66,12 +66,12 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, L
     Ok(recorded)
 }
 
-/// Converts the takes that a killed program left in a folder to recordings, and returns them.
-/// Complete takes among them are judged in the same way as any other complete take. Takes that
-/// another program is still recording are not changed.
+/// Finds the takes that a killed program left in a folder, converts them to recordings, and returns
+/// the recordings. Complete takes among them are judged in the same way as any other complete take.
+/// Takes that another program is still recording are not changed.
 ///
 /// # Errors
-/// If the header of a part file is damaged, or a recording cannot be written.
+/// Returns an error if the header of a part file is damaged, or if a recording cannot be written.
 pub fn recover(folder: &Path) -> Result<Vec<TakeReport>, LabError> {
     let parts = files::part_files(folder).map_err(FileError::in_file(folder))?;
     let mut recovered = Vec::new();

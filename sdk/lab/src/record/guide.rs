@@ -6,8 +6,8 @@ use serde::Serialize;
 /// The target of a recording, as the screen shows it.
 ///
 /// On the screen, the target is a square that moves back and forth over a stroke at the target
-/// speed. The metronome beats at each turn. The target already moves before the take begins, so
-/// that the finger can follow it from the start.
+/// speed. The metronome beats each time the target turns. The target already moves before the take
+/// begins, so that the finger can follow it from the start.
 ///
 /// ```
 /// use htex_lab::record::{Force, Guidance};

@@ -4,11 +4,12 @@
 //! A take is recorded into a part file. Each full second of samples is appended to this file and
 //! flushed to disk. So a program that is killed loses at most the current second, and [`recover`]
 //! converts the contents of the part file to a recording. A complete take is judged ([`judge`]).
-//! The session sets a take aside and records it again if the mean, minimum or maximum of speed or
-//! force differs from its target by more than the tolerance. In the paper (`docs/paper.md`), the
-//! tolerance is 10 % (Supplementary, "Texture recording"). The session also sets a take aside if
-//! the finger slides on its target for too short a time, or if there are too few sweeps
-//! ([`Requirements`]). The results are recordings that `htex fit` reads, each with a JSON file.
+//! The session sets a take aside and records it again if the speed or the force is off target: its
+//! mean, minimum or maximum differs from the target by more than the tolerance. In the paper
+//! (`docs/paper.md`), the tolerance is 10 % (Supplementary, "Texture recording"). The session also
+//! sets a take aside if the finger slides close to its target speed and force for too short a time,
+//! or if there are too few sweeps ([`Requirements`]). The results are recordings that `htex fit`
+//! reads, each with a JSON file.
 //!
 //! From a finger to a recording:
 //!

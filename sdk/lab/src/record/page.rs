@@ -133,7 +133,7 @@ impl GuidePage {
     /// source's sample rate.
     ///
     /// # Errors
-    /// [`LabError::Page`] if the port is taken or the system provides no random numbers.
+    /// Returns [`LabError::Page`] if the port is taken or the system provides no random numbers.
     pub fn open(
         port: u16,
         setup: &Setup,

@@ -120,8 +120,8 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`LabError::File`] if the file cannot be read or is not a part file. [`LabError::Busy`] if
-/// another program is writing to the file.
+/// Returns [`LabError::File`] if the file cannot be read or is not a part file. Returns
+/// [`LabError::Busy`] if another program is writing to the file.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.map_err(FileError::in_file(path))?;

@@ -1,6 +1,6 @@
-//! Reads a source in blocks: the values of its signals, and the tracker's rows up to the same time.
-//! This module also runs the phases of a session block by block, and computes the state that the
-//! user sees.
+//! Reads a source in blocks: the values of its signals, and the tracker's rows up to the end of
+//! each block. This module also runs the phases of a session block by block, and computes the state
+//! that the user sees.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

@@ -30,8 +30,8 @@ impl Session {
     /// Creates a session and its folder. The source does not start yet.
     ///
     /// # Errors
-    /// If a value of the setup is out of range, or if there is a target for a speed or a force that
-    /// no signal measures.
+    /// Returns an error if a value of the setup is out of range, or if there is a target for a
+    /// speed or a force that no signal measures.
     pub fn new(
         setup: Setup,
         source: Box<dyn Input>,
@@ -66,9 +66,9 @@ impl Session {
     /// block of samples, and `told` after each completed take.
     ///
     /// # Errors
-    /// [`LabError::OffTarget`] if no take kept to its target. [`LabError::Left`] if `watch` ended
-    /// the session. The errors of the source; the samples recorded before such an error are in the
-    /// folder `incomplete`.
+    /// Returns [`LabError::OffTarget`] if no take kept to its target. Returns [`LabError::Left`] if
+    /// `watch` ended the session. Returns the errors of the source; the samples recorded before
+    /// such an error are in the folder `incomplete`.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,

@@ -31,7 +31,8 @@ impl Signals {
     /// sensors.
     ///
     /// # Errors
-    /// If there are fewer channels than the calibrations need, or the channels do not fit the map.
+    /// Returns an error if there are fewer channels than the calibrations need, or if the channels
+    /// do not fit the map.
     pub fn new(
         source: &str,
         channels: &[Channel],

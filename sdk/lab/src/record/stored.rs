@@ -33,7 +33,7 @@ impl KnownTake {
     /// `None` if there is no such JSON, or if the JSON belongs to a recording in another format.
     ///
     /// # Errors
-    /// [`LabError::File`] if the JSON describes a take but has another version or unknown
+    /// Returns [`LabError::File`] if the JSON describes a take but has another version or unknown
     /// keys.
     ///
     /// ```

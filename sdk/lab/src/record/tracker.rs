@@ -15,7 +15,7 @@ const SHORTEST_S: f64 = 1e-6;
 
 /// A tracker that delivers positions or speeds as rows with times.
 pub trait TrackerRows: Send {
-    /// Role and unit of each signal, without the time.
+    /// Role and unit of each signal, except the time.
     fn signals(&self) -> Vec<(String, String)>;
 
     /// Appends the rows that have arrived since the last call. A row has the time on the source's
@@ -23,7 +23,7 @@ pub trait TrackerRows: Send {
     /// source's last sample.
     ///
     /// # Errors
-    /// If the tracker delivers something that is not a position.
+    /// Returns an error if the tracker delivers something that is not a position.
     fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), LabError>;
 
     /// Called when the source's clock starts again at 0 s, because the session reads another source
@@ -45,7 +45,7 @@ impl TableTracker {
     /// Reads a file with positions or speeds. The first row of the file gets the time 0 s.
     ///
     /// # Errors
-    /// If the file cannot be read, or has neither positions nor speeds.
+    /// Returns an error if the file cannot be read, or has neither positions nor speeds.
     pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, LabError> {
         let table = read_channels(path, &ReadOptions::default())?;
         let names: Vec<(String, String)> =

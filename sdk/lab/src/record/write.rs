@@ -1,4 +1,5 @@
-//! Writes the files of a take: the recording, the tracker's rows, and the JSON next to them.
+//! Writes the files of a take: the recording, the tracker's rows, and a JSON file that describes
+//! the take.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

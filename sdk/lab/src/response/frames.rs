@@ -1,4 +1,5 @@
-//! Cuts recordings into windows, and weights their samples, for hits and for continuous drives.
+//! Cuts recordings of hits, or of a continuous drive, into windows, and weights the samples of each
+//! window.
 
 use std::f64::consts::PI;
 

@@ -22,7 +22,7 @@ use crate::error::LabError;
 /// - A setting is out of range.
 /// - There are no records, the records have different sample rates, or a record is shorter than a
 ///   window.
-/// - There are no hits, or fewer than two usable ones.
+/// - There are no hits, or fewer than two usable hits.
 /// - A magnitude is out of the range that a response file may contain.
 pub fn measure(
     records: &[Record],
@@ -163,7 +163,7 @@ pub struct MeasuredResponse {
 
 impl MeasuredResponse {
     /// Converts the response to a [`SetupResponse`]. Programs use this response to remove the
-    /// effect of the rig from recordings, or of the display from scenes.
+    /// effect of the rig from recordings, or the effect of the display from scenes.
     /// [`write_csv`](SetupResponse::write_csv) writes the file that recordings and scenes use.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {

@@ -17,7 +17,7 @@ pub struct Piece {
     pub file: String,
     /// Time of the hit's trigger, or of the window's start, in the file, seconds.
     pub time_s: f64,
-    /// Largest deviation of the input from its level at rest in this part, with its sign, in the
+    /// Largest deviation of the input from its rest level within this part, with its sign, in the
     /// input's unit.
     pub peak: f64,
     /// Why the piece was thrown out; `None` if it is used.

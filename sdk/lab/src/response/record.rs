@@ -51,8 +51,9 @@ impl Record {
     /// Creates a record from the channels of a file. The first samples are at 0 s.
     ///
     /// # Errors
-    /// The sample rate is not above 0 or is above 1e9 Hz, the channels have different lengths, a
-    /// sample is not finite or is beyond 1e12, or a channel is constant or empty.
+    /// Returns an error if the sample rate is not above 0 or is above 1e9 Hz, the channels have
+    /// different lengths, a sample is not finite or is beyond 1e12, or a channel is constant or
+    /// empty.
     pub fn new(
         file: impl Into<String>,
         rate_hz: f64,
@@ -152,8 +153,8 @@ impl Record {
 /// ```
 ///
 /// # Errors
-/// `input` or `output` is neither a column nor an expression, both name the same column, or
-/// `others` maps an axis.
+/// Returns an error if `input` or `output` is neither a column nor an expression, if both name the
+/// same column, or if `others` maps an axis.
 pub fn column_map(
     input: &str,
     output: &str,

@@ -11,7 +11,7 @@ use crate::error::LabError;
 /// Smallest number of samples in a window.
 const FEWEST_SAMPLES: f64 = 16.0;
 
-/// Settings of measuring a frequency response.
+/// Settings for the measurement of a frequency response.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

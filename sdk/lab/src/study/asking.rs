@@ -59,8 +59,8 @@ const GUARD: Duration = Duration::from_millis(300);
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Returns how long the asker must ignore keys after it shows the view. Keys pressed in this
-    /// time were meant for the previous view.
+    /// Returns the time for which the connection to the participant must ignore keys after it shows
+    /// this view. Keys pressed in this time were meant for the previous view.
     pub fn guard(&self) -> Duration {
         match self {
             Self::Question { .. } | Self::Matching { .. } => GUARD,
@@ -94,10 +94,11 @@ pub trait Asker {
 }
 
 pub trait Clock {
-    /// Returns the time in milliseconds, since 1970 or since the start of a simulated session.
+    /// Returns the time in milliseconds since 1970, or since the start of the session for a
+    /// simulated clock.
     fn now_ms(&self) -> u64;
 
-    /// Waits for this time. A simulated clock does not wait, but advances by this time.
+    /// Waits for this time. A simulated clock does not wait: it moves forward by this time at once.
     fn pass(&mut self, time: Duration);
 
     /// Advances a simulated clock by the length of something that was played.
@@ -119,10 +120,10 @@ pub struct Playback {
     pub drive_v: Option<f64>,
     /// Levels of the samples that were written to the device.
     pub output: OutputLevels,
-    /// Reference level: the RMS that is mapped to the device's drive voltage or preview level, in
-    /// the assets' unit.
+    /// Reference level, in the assets' unit: the RMS that is mapped to the device's drive voltage
+    /// or preview level.
     pub reference_rms: f64,
-    /// The recording of the felt force, which is already on disk.
+    /// The recording of the force on the participant's finger, already written to a file.
     pub felt: Option<FeltFile>,
 }
 
@@ -134,16 +135,16 @@ pub trait Rig {
     /// returns true.
     ///
     /// # Errors
-    /// The errors of the renderer and of the device.
+    /// Returns the errors of the renderer and of the device.
     fn play(
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Playback, Self::Error>;
 
-    /// Returns the drive of a display (volts) and the levels that were written to the device, for
-    /// the last [`Self::play`] that ended with an error. Returns `None` if the device was not
-    /// opened.
+    /// Returns values of the last [`Self::play`] that ended with an error: the drive of a display
+    /// (volts), and the levels that were written to the device. Returns `None` if the device was
+    /// not opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
     /// Returns whether an error of [`Self::play`] means that the device ran out of samples. Playing

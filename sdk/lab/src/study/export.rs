@@ -59,10 +59,10 @@ pub enum OffTarget {
 /// several attributes, `attribute` selects the attribute whose ratings are exported.
 ///
 /// # Errors
-/// [`LabError::NoAnswers`] if the folder has no answers. [`LabError::OtherVersion`] if the answers
-/// belong to several versions of a study, or to both simulated and real participants.
-/// [`LabError::Attribute`] if the attribute is not in the answers. Other errors if a file cannot be
-/// read.
+/// Returns [`LabError::NoAnswers`] if the folder has no answers. Returns [`LabError::OtherVersion`]
+/// if the answers belong to several versions of a study, or to both simulated and real
+/// participants. Returns [`LabError::Attribute`] if the attribute is not in the answers. Returns
+/// other errors if a file cannot be read.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, LabError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);

@@ -4,8 +4,8 @@
 //! The source is opened anew for each trial, so that the recording of a trial does not depend on
 //! earlier trials.
 //!
-//! Suppose that a session is killed and then continued. If the source delivers the same samples,
-//! the session writes the same files as a session without interruption.
+//! A session that is killed and then continued writes the same files as a session without
+//! interruption. This requires that the source delivers the same samples both times.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -93,8 +93,8 @@ impl Felt {
     /// sample rate.
     ///
     /// # Errors
-    /// [`LabError::File`], and [`LabError::Setup`] if the file format of the recordings cannot
-    /// store this sample rate.
+    /// Returns [`LabError::File`] if the folder cannot be prepared, and [`LabError::Setup`] if the
+    /// file format of the recordings cannot store this sample rate.
     pub fn new(
         setup: FeltSetup,
         open: OpenSource,
@@ -131,7 +131,8 @@ impl Felt {
     /// earlier samples are left out.
     ///
     /// # Errors
-    /// If the source cannot be opened or started, or has another sample rate than before.
+    /// Returns an error if the source cannot be opened or started, or if its sample rate has
+    /// changed.
     pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), LabError> {
         // A recording that was not finished may still run.
         self.abort();
@@ -220,7 +221,8 @@ impl Felt {
     /// after both files are on disk. Returns `None` if nothing was recorded.
     ///
     /// # Errors
-    /// The errors of the source, and [`LabError::File`].
+    /// Returns the errors of the source, and [`LabError::File`] if a file cannot be written or
+    /// read.
     pub fn finish(
         &mut self,
         stimulus: &Stimulus,

@@ -50,7 +50,8 @@ impl Reference {
     /// recording's signals is an error.
     ///
     /// # Errors
-    /// [`LabError::File`] if no texture spectrum from 20 to 1000 Hz can be read from the recording.
+    /// Returns [`LabError::File`] if no texture spectrum from 20 to 1000 Hz can be read from the
+    /// recording.
     pub fn from_recording(
         take: &Take,
         file: &Path,
@@ -65,7 +66,7 @@ impl Reference {
     /// the motion is unknown, returns the spectrum at the first condition.
     ///
     /// # Errors
-    /// [`LabError::File`] if the asset cannot be read or does not have the spectrum.
+    /// Returns [`LabError::File`] if the asset cannot be read or does not have the spectrum.
     pub fn from_asset(file: &Path, motion: Exploration) -> Result<Self, LabError> {
         let asset = Asset::open(file).map_err(FileError::in_file(file))?;
         let conditions = asset.manifest.conditions.iter().enumerate();
@@ -112,9 +113,9 @@ impl Reference {
 /// real textures by name.
 ///
 /// # Errors
-/// Returns the errors of [`crate::study::export()`]. [`LabError::NotRecorded`] if there are no
-/// recordings. [`LabError::File`] if a recording does not belong to its trial or has no spectrum,
-/// or if the spectrum of a real texture is missing.
+/// Returns the errors of [`crate::study::export()`]. Returns [`LabError::NotRecorded`] if there are
+/// no recordings. Returns [`LabError::File`] if a recording does not belong to its trial or has no
+/// spectrum, or if the spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,

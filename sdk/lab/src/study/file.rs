@@ -54,7 +54,7 @@ pub struct Study {
     pub models: Vec<String>,
     /// An additional model with which you check whether a participant's ratings are reliable.
     /// Choose the best available model (`bands`). The model is played and rated like the other
-    /// models, and is marked in the results. A participant who rates the hidden reference low is
+    /// models, and is marked in the results. A participant who rates this hidden reference low is
     /// unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
@@ -213,8 +213,8 @@ pub struct Matching {
     pub reversals: u32,
 }
 
-/// Method of matching a gain. Each method starts at the level at which the participant felt the
-/// texture.
+/// Method of matching a gain. Each method starts at the level at which the participant first felt
+/// the texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {

@@ -19,8 +19,8 @@ pub(crate) const VERSION: &str = "1.0";
 pub enum Line {
     /// The first line of the file.
     Header(Box<Header>),
-    /// The start of a session. A session with a simulated clock has no such line, because this
-    /// clock has no date.
+    /// The start of a session. A session with a simulated clock does not write this line, because
+    /// this clock has no date.
     Session(SessionStart),
     /// A key press while the level of a texture rises, in the training or in the gain matching. The
     /// level rises until the participant can feel the texture.
@@ -106,10 +106,10 @@ pub struct DeviceUsed {
     /// Profile of the device; empty if none is used.
     pub profile: String,
     /// All settings of the device, such as the gain of an amplifier. They include the settings from
-    /// the profile and the default values. Two kinds of settings are left out. The first kind is
-    /// the names of the files to which the device writes the samples of a trial. The second kind is
-    /// `buffer_ms`, if the motion is not live. In this case, a participant cannot feel the length
-    /// of the buffer.
+    /// the profile and the default values. Two kinds of settings are left out. The first kind
+    /// consists of the names of the files to which the device writes the samples of a trial. The
+    /// second kind is `buffer_ms`, if the motion is not live. In this case, a participant cannot
+    /// feel the length of the buffer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest absolute value that the device accepts, in the device's unit (volts for a display).
@@ -178,7 +178,7 @@ pub struct SourceUsed {
     pub rate_hz: f64,
     /// Recorded signals: role and unit.
     pub signals: Vec<(String, String)>,
-    /// Signals of the tracker, without the time: role and unit.
+    /// Role and unit of each signal of the tracker, except the time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tracker: Vec<(String, String)>,
     pub format: Format,
@@ -386,8 +386,8 @@ impl Line {
     /// Parses a line.
     ///
     /// # Errors
-    /// A text that states what is wrong: the line is not a line of answers, has unknown keys or
-    /// invalid values, or is a header of another version.
+    /// Returns a text that states what is wrong: the line is not a line of answers, has unknown
+    /// keys or invalid values, or is a header of another version.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         match &line {

@@ -38,9 +38,10 @@ impl Log {
     /// never followed.
     ///
     /// # Errors
-    /// [`LabError::OtherVersion`] if the file has another header. [`LabError::Busy`] while another
-    /// program has the file open. [`LabError::Line`] if a line is damaged. [`LabError::File`] for
-    /// errors of the file system, or if the path is a link or a pipe.
+    /// Returns [`LabError::OtherVersion`] if the file has another header. Returns
+    /// [`LabError::Busy`] while another program has the file open. Returns [`LabError::Line`] if a
+    /// line is damaged. Returns [`LabError::File`] for errors of the file system, or if the path is
+    /// a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), LabError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
@@ -201,7 +202,7 @@ impl Header {
     /// hashes of the study file and of all files that the study names.
     ///
     /// # Errors
-    /// [`LabError::File`] if one of the files cannot be read.
+    /// Returns [`LabError::File`] if one of the files cannot be read.
     pub fn new(
         study: &Study,
         path: &Path,

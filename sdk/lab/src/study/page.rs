@@ -1,4 +1,4 @@
-//! The web page that asks the participant during a session ([`crate::page`]).
+//! The web page through which the participant answers during a session ([`crate::page`]).
 //!
 //! Each view has a number, and an answer contains the number of the view that it answers. Therefore
 //! a second press of a key does not count: the view with its number has already been answered. A
@@ -86,7 +86,7 @@ impl Page {
     /// Serves the page on this machine.
     ///
     /// # Errors
-    /// [`LabError::Page`] if the port is taken or the system provides no random numbers.
+    /// Returns [`LabError::Page`] if the port is taken or the system provides no random numbers.
     pub fn open(options: PageOptions) -> Result<Self, LabError> {
         let port = options.port;
         let asked = Arc::new(PageState(Mutex::new(State::new(options))));

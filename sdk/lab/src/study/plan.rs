@@ -23,8 +23,8 @@ pub struct ParticipantPlan {
     pub participant: String,
     /// Practice trials; empty if the study has no training phase.
     pub training: Vec<Trial>,
-    /// Textures in the order in which their gains are matched. All are played with the model that
-    /// the study uses for gain matching. Empty if the study has no gain phase.
+    /// Textures in the order in which their gains are matched. All textures are played with the
+    /// model that the study uses for gain matching. Empty if the study has no gain phase.
     pub gain: Vec<String>,
     /// The rated trials.
     pub trials: Vec<Trial>,
@@ -36,7 +36,7 @@ pub struct Trial {
     pub number: u32,
     pub texture: String,
     pub model: String,
-    /// Repetition of this texture with this model, from 1.
+    /// Number of this repetition of the texture with this model, from 1.
     pub repetition: u32,
     /// Whether the trial's model is the study's hidden reference.
     #[serde(skip_serializing_if = "std::ops::Not::not")]

@@ -34,7 +34,7 @@ pub enum SessionEnd {
 /// next trial begins.
 ///
 /// # Errors
-/// [`LabError`], and errors of the rig.
+/// Returns the errors of the session ([`LabError`]) and the errors of the rig.
 pub fn run<R: Rig>(
     session: &mut Session<'_>,
     rig: &mut R,

@@ -189,8 +189,8 @@ impl<'a> Session<'a> {
     /// Records a rating for the current step, and how the rated trial was played.
     ///
     /// # Errors
-    /// [`LabError::File`], and [`LabError::Line`] if the current step does not accept this
-    /// rating.
+    /// Returns [`LabError::Line`] if the current step does not accept this rating, and
+    /// [`LabError::File`] if the file of answers cannot be written.
     pub fn rate(
         &mut self,
         rating: u8,

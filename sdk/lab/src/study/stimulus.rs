@@ -26,9 +26,9 @@ pub struct Stimulus {
     /// Gain relative to the maximum, decibels. If `None`, the stimulus plays at the level that the
     /// study's device sets.
     pub gain_db: Option<f64>,
-    /// Reference level at the time when the participant set the gain: the RMS that was mapped to
-    /// the device's drive voltage or preview level, in the assets' unit. Only devices whose
-    /// `levels` setting is `own` use this level.
+    /// Level (RMS, in the assets' unit) that was mapped to the device's drive voltage or preview
+    /// level when the participant set the gain. Only devices whose `levels` setting is `own` use
+    /// this level.
     pub reference_rms: Option<f64>,
     /// File name, without extension, for the recording of the felt force. `None` if this force is
     /// not recorded.
@@ -56,8 +56,8 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
-/// Returns a display's drive before a gain is applied, volts. This is the study's `drive_v` or, if
-/// the study sets none, the display's limit.
+/// Returns a display's drive voltage before a gain is applied, volts. This is the study's `drive_v`
+/// or, if the study sets none, the display's limit.
 pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     let is_display = able.quantity == Quantity::DisplayVoltage;
     device.drive_v.or(able.limit).filter(|_| is_display)
@@ -117,7 +117,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Creates a meter for samples in a unit, at a sample rate in hertz.
+    /// Creates a meter for samples with this unit and this sample rate (hertz).
     pub fn new(unit: &str, rate_hz: f64) -> Self {
         Self {
             unit: unit.to_owned(),

@@ -51,7 +51,7 @@ pub struct FittedAsset {
 /// A model that cannot be fitted is left out and listed in `skipped`.
 ///
 /// # Errors
-/// When a recording cannot be used, or no model could be fitted.
+/// Returns an error if a recording cannot be used, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
     fit_asset_watched(takes, request, &mut |_| {})
 }

@@ -1,18 +1,18 @@
-//! Extra conditions between recorded speeds, computed by the texture's law.
+//! Extra conditions between recorded speeds, computed by the texture's scaling law.
 //!
 //! A player mixes the parameters of neighbouring conditions. If the relief of a surface produces
 //! spectral lines, the frequencies of these lines follow the speed. But mixing two recorded
 //! conditions does not move the lines: the lines of one speed fade out while the lines of the next
-//! speed fade in. Therefore this module computes further conditions between two recorded speeds.
-//! According to the law, it shifts both recorded spectra to the intermediate speed. It then mixes
-//! the shifted spectra. We fitted five simulated reliefs at 40, 80 and 160 mm/s, and compared the
-//! fits with the simulation at 57 and 113 mm/s. For corrugated paper, the third-octave errors of
-//! the model Bands at these two speeds are 1.2 and 0.8 dB. Without added conditions, these errors
-//! would be 4.3 and 5.5 dB. On the other reliefs, the errors are 0.3 to 1.6 dB. Without added
-//! conditions, these errors would be 0.6 to 3.4 dB. One of the ten predictions gets worse: the
-//! error for vinyl, which has hardly any lines, is 1.6 dB instead of 0.9 dB at 57 mm/s. This module
-//! adds conditions only if the recordings show that frequencies follow the speed. We tried
-//! third-party recordings of strokes, and they did not show that frequencies follow the speed.
+//! speed fade in. Therefore this module computes further conditions between two recorded speeds. It
+//! shifts both recorded spectra to the intermediate speed, by the scaling law. It then mixes the
+//! shifted spectra. We fitted five simulated reliefs at 40, 80 and 160 mm/s, and compared the fits
+//! with the simulation at 57 and 113 mm/s. For corrugated paper, the third-octave errors of the
+//! model Bands at these two speeds are 1.2 and 0.8 dB. Without added conditions, these errors would
+//! be 4.3 and 5.5 dB. On the other reliefs, the errors are 0.3 to 1.6 dB. Without added conditions,
+//! these errors would be 0.6 to 3.4 dB. One of the ten predictions gets worse: the error for vinyl,
+//! which has hardly any lines, is 1.6 dB instead of 0.9 dB at 57 mm/s. This module adds conditions
+//! only if the recordings show that frequencies follow the speed. We tried third-party recordings
+//! of strokes, and they did not show that frequencies follow the speed.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};

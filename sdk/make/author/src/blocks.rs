@@ -1,10 +1,10 @@
 //! Repeatability: how much the spectra of one texture differ between blocks of time.
 //!
-//! Overlapping windows share samples. Suppose that every second window were averaged into one half
-//! and all other windows into the other half. Because windows overlap, both halves would share
-//! samples, and the difference between them would be several times too small. Blocks of time share
-//! no samples. Each block lasts up to a second. The difference between blocks therefore includes
-//! the drift of texture, finger and motion within about a second.
+//! Overlapping windows share samples. Repeatability cannot be computed from two spectra that each
+//! average every second window. Because windows overlap, the two spectra would share samples, and
+//! the difference between them would be several times too small. This module uses blocks of time
+//! instead, because blocks share no samples. Each block lasts up to a second. The difference
+//! between blocks therefore includes the drift of texture, finger and motion within about a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -40,7 +40,8 @@ pub(crate) struct Span {
 pub struct Repeatability {
     /// The RMS over nine bands.
     pub band_rms_db: f64,
-    /// The RMS over third octaves; `None` if the band contains no third octave with energy.
+    /// The RMS over third octaves; `None` if the texture's band contains no third octave with
+    /// energy.
     pub third_octave_rms_db: Option<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! Whether a fitted asset is coded. A coded asset has the same texture in fewer bytes, but readers
-//! of version 1.0 refuse it.
+//! Selects whether a fitted asset is stored in the coded form. A coded asset has the same texture
+//! in fewer bytes, but readers of version 1.0 refuse it.
 
 use htex_format::Asset;
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// has few kilobytes, so it is worth more that every reader can open it.
 const MOST_PLAIN: usize = 8;
 
-/// Whether an asset is coded: the same texture in fewer bytes.
+/// Selects whether an asset is coded, i.e. stores the same texture in fewer bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Coding {

@@ -15,8 +15,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. Measures on rendered samples are missing if two recordings are
-    /// compared, because only representations can be rendered.
+    /// The measures of agreement. Values that are computed from rendered samples are missing if two
+    /// recordings are compared, because only representations can be rendered.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.
@@ -28,7 +28,7 @@ pub struct Difference {
 pub struct FeltDifference {
     /// Centre frequencies of third-octave bands, hertz.
     pub centre_hz: Vec<f64>,
-    /// In each band, difference of the levels above the detection threshold, decibels.
+    /// For each band: how much the two levels above the detection threshold differ, decibels.
     pub error_db: Vec<f64>,
     /// The difference over all bands, in a few numbers.
     #[serde(flatten)]
@@ -89,7 +89,8 @@ impl Difference {
 /// measured.
 ///
 /// # Errors
-/// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
+/// Returns an error if the quantities differ, a representation cannot be read, or a model refuses
+/// its parameters.
 pub fn compare(
     asset: &htex_play::Texture,
     reference: &TextureSpectrum,

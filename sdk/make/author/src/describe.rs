@@ -13,9 +13,9 @@ use crate::{FeltError, TextureSpectrum};
 /// default condition and the held-out error that the asset states. If the asset keeps recorded
 /// spectra, the description also contains the felt difference from these spectra.
 ///
-/// All values are for the representation that an app with only the built-in models would play. The
-/// same textures therefore give the same library on every machine. If no built-in model can play
-/// the texture, the description is empty.
+/// All values are for the representation that an app with only the built-in models would play.
+/// Therefore, the values do not depend on installed plugins, and the same textures give the same
+/// library on every machine. If no built-in model can play the texture, the description is empty.
 pub fn describe(asset: &Asset) -> Description {
     let texture = texture(asset);
     match played(&texture) {

@@ -11,7 +11,8 @@ use crate::settings::Metadata;
 /// signatures stay as they are.
 ///
 /// # Errors
-/// When the bytes are not a valid asset, or when saving the changed asset would lose data.
+/// Returns an error if the bytes are not a valid asset, or if saving the changed asset would lose
+/// data.
 pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
     let limits = Limits::default();
     let (mut asset, findings) = Asset::from_bytes_with_findings(bytes, &limits)?;

@@ -21,7 +21,7 @@ pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 /// is not better than others (`tests/peers/confusions.py`).
 const SENSATION_EXPONENT: f64 = 0.3;
 
-/// Bound for the difference between two recordings of a surface, in multiples of the first
+/// Bound for how much two recordings of the same surface differ, in multiples of the first
 /// recording's repeatability. The repeatability itself is not a bound but a median: half of all
 /// second recordings differ by more. If a surface is recorded a second time, the second recording
 /// is within this bound in nine out of ten cases. We compared 180 pairs of takes: in each pair, two
@@ -160,8 +160,8 @@ impl FeltError {
     }
 }
 
-/// Counts of textures by what a listener can feel: textures whose error is below the listener's
-/// difference threshold, and textures that cannot be felt at all. Another count,
+/// Counts of two groups of textures: textures whose error is below a listener's difference
+/// threshold, and textures that the listener cannot feel at all. Another count,
 /// `within_repeatability`, is the number of textures whose error is within the recording's own
 /// variation. `within_repeatability` does not show what can be felt: the less well the recordings
 /// repeat, the higher this count is.

@@ -6,11 +6,11 @@
 //!
 //! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
 //! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
-//! with the speed for other reasons. In recorded strokes without spectral lines that move with the
-//! speed, the best exponent `a` was anywhere between -0.5 and 1.5. With the best exponent, the
-//! squared difference was still 0.25 to 0.9 times its value without a shift. Therefore an exponent
-//! counts as measured only in two cases: the squared difference falls to a quarter of its value
-//! without a shift, or to a quarter of its value at the assumed exponent.
+//! with the speed in ways that are no shift. In recorded strokes without spectral lines that move
+//! with the speed, the best exponent `a` was anywhere between -0.5 and 1.5. With the best exponent,
+//! the squared difference was still 0.25 to 0.9 times its value without a shift. Therefore an
+//! exponent counts as measured only in two cases: the squared difference falls to a quarter of its
+//! value without a shift, or to a quarter of its value at the assumed exponent.
 //!
 //! Two spectra have many features that a shift can align by accident. In recorded strokes, one of
 //! 12 pairs of speeds gave an exponent of 0.70, which no third speed confirmed. Therefore two

@@ -7,9 +7,10 @@
 //! and sSlope to the largest bin. In a noisy estimate of a spectrum, the largest bins are higher
 //! than the true spectrum. The level of MFCC is too low because MFCC averages logarithms. For a
 //! model such as Bands, the level follows from the energies that the model stores. The descriptor
-//! of such a model states this ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the
-//! level of the model's fit. Before sBeta and sSlope compute the level, they round their parameters
-//! in the same way as files do.
+//! of such a model states that the parameters contain the level
+//! ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the model's fit.
+//! Before sBeta and sSlope compute the level, they round their parameters in the same way as a file
+//! that stores the parameters.
 //!
 //! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate.
 //! The reason is the conversion to the player's rate, which removes up to half of the power near
@@ -56,7 +57,7 @@ impl Level {
 /// parameters, rounded as the file stores them.
 ///
 /// # Errors
-/// When the model refuses the parameters.
+/// Returns an error if the model refuses the parameters.
 pub fn stored_level(
     model: &LoadedModel,
     fit: &Fit,

@@ -19,17 +19,17 @@
 //!    `blocks` averages the odd and the even blocks of time separately, which gives two spectra
 //!    that share no sample. `law` estimates how frequencies and level follow the motion, and
 //!    `between` adds conditions that are computed by this law. The kind of average is a setting of
-//!    this stage. For recordings of a free motion, `grid` replaces stages 1 and 2. This module
-//!    defines a grid of speeds and forces. For each point of the grid, `grid` averages the windows
-//!    in which the motion is steady and near that point.
+//!    this stage. For recordings of a free motion, `grid` replaces stages 1 and 2. `grid` defines a
+//!    grid of speeds and forces. For each point of the grid, `grid` averages the windows in which
+//!    the motion is steady and near that point.
 //! 3. `fit` turns the conditions into the parameters of each model, rounded as the file stores
 //!    them. `level` computes the level of the *rounded* parameters. From the rounded parameters,
 //!    the models compute magnitudes and samples, and `measure` compares both with the recording. If
 //!    the error in bands is large, `alternatives` tries other options and models, and lists the
 //!    options and models with a smaller error. For a grid, the stage also measures held-out errors.
-//!    It leaves out a block of time, and compares this block with what a player plays from the
-//!    other blocks. The models with their options, and the source of the level, are settings of
-//!    this stage.
+//!    It leaves out a block of time, and compares this block with the samples that a player makes
+//!    from the other blocks. The models with their options, and the source of the level, are
+//!    settings of this stage.
 //! 4. `asset` puts the conditions, parameters, levels and measures together as a [`FittedAsset`].
 //!    Name, licence, author and tags are settings of this stage.
 //!

@@ -131,7 +131,8 @@ pub(crate) fn rounding_error_db(
 /// (`rendered_spectrum`).
 ///
 /// # Errors
-/// When the model refuses the parameters, or when it renders samples that are not finite.
+/// Returns an error if the model refuses the parameters, or if it renders samples that are not
+/// finite.
 pub fn read_spectrum(
     model: &LoadedModel,
     parameters: &[f64],
@@ -168,7 +169,7 @@ fn rendered_spectrum(
 /// above the samples' Nyquist frequency are 0.
 ///
 /// # Errors
-/// When there are too few samples, or some samples are not finite.
+/// Returns an error if there are too few samples, or some samples are not finite.
 pub fn spectrum_of_samples(
     samples: &[f32],
     rate_hz: f64,

@@ -4,10 +4,10 @@
 //! outside the band makes the ends of a segment nonzero. A plain sum of the segments would then
 //! have a step every 0.1 s. Therefore each segment is multiplied by the window once more before it
 //! is added. Dividing the sum by the sum of the squared windows gives back the recorded signal.
-//! Segments from different stretches have no signal in common. At a transition between two such
-//! segments, the sum is divided by the square root of the sum of the windows' fourth powers. This
-//! preserves the power. The last segment fades into the first segment in the same way, so that the
-//! loop has no seam.
+//! Segments from different stretches of the recording have no signal in common. At a transition
+//! between two such segments, the sum is divided by the square root of the sum of the windows'
+//! fourth powers. This preserves the power. The last segment fades into the first segment in the
+//! same way, so that the loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};

@@ -103,8 +103,8 @@ pub struct Segments {
     pub sweeps: Vec<Sweep>,
     /// Number of sweeps that the recording's beginning or end cuts off. These sweeps are not read.
     pub cut_off: usize,
-    /// First samples of the segments that are left out because their motion differs from the
-    /// target.
+    /// Index of the first sample of each segment that is left out because its motion differs from
+    /// the target.
     pub off_target: Vec<usize>,
     /// Set if the recording has sweeps, but `auto` uses windows. The reason is that segments in the
     /// sweeps would represent too little of the sliding.
@@ -115,7 +115,8 @@ pub struct Segments {
 }
 
 impl Segments {
-    /// Returns the stretches that are read, in samples; adjoining segments are merged.
+    /// Returns the parts of the recording that the segments cover, in samples; adjoining segments
+    /// are merged.
     pub fn stretches(&self) -> Vec<Range<usize>> {
         let mut stretches: Vec<Range<usize>> = Vec::new();
         for &start in &self.starts {

@@ -91,8 +91,8 @@ pub struct SegmentSpectra {
     pub quantity: Quantity,
     /// The band: 20 to 1000 Hz, or up to half the sample rate.
     pub band: Band,
-    /// One spectrum per segment on the band's grid. A sinusoid of amplitude A at a grid frequency
-    /// has magnitude A.
+    /// One spectrum for each segment, on the band's grid. A sinusoid of amplitude A at a grid
+    /// frequency has magnitude A.
     pub spectra: Vec<Vec<Complex<f64>>>,
     pub segments: Segments,
     /// Warnings, as sentences.
@@ -114,9 +114,9 @@ pub struct TextureSpectrum {
     /// Repeatability: the expected difference between the spectra of two recordings of this texture
     /// at this condition.
     ///
-    /// To compute it, the parts of the recordings that are read are cut into blocks of 0.2 to 1 s,
-    /// which share no sample. A segment in the middle of a sweep is one block. `None` if there are
-    /// fewer than four blocks, or if half of the blocks are silent.
+    /// To compute the repeatability, htex divides the parts of the recordings that it reads into
+    /// blocks of 0.2 to 1 s, which share no sample. A segment in the middle of a sweep is one
+    /// block. `None` if there are fewer than four blocks, or if half of the blocks are silent.
     pub repeatability: Option<Repeatability>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
@@ -124,8 +124,8 @@ pub struct TextureSpectrum {
     pub signal_rate_hz: f64,
 }
 
-/// Band, frequencies and magnitudes of a spectrum. Fits and measures use only these parts of a
-/// spectrum.
+/// Band, frequencies and magnitudes of a spectrum. Fits and error measures use only these parts of
+/// a spectrum.
 #[derive(Debug, Clone, Copy)]
 pub struct SpectrumRef<'a> {
     pub band: Band,
@@ -134,8 +134,8 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
-    /// Returns whether the spectrum was recorded. A spectrum that was not recorded was computed by
-    /// the texture's law from two recorded spectra.
+    /// Returns whether the spectrum was recorded. Otherwise, the texture's law computed it from two
+    /// recorded spectra.
     pub fn is_recorded(&self) -> bool {
         self.segments > 0
     }
@@ -148,7 +148,8 @@ impl TextureSpectrum {
     /// Averages the segment spectra of one or more recordings of one texture at one condition.
     ///
     /// # Errors
-    /// When there are no segments, or when the quantities or bands of the recordings differ.
+    /// Returns an error if there are no segments, or if the quantities or bands of the recordings
+    /// differ.
     pub fn average(parts: &[SegmentSpectra], averaging: Averaging) -> Result<Self, AuthorError> {
         let first = parts.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
         if parts.iter().any(|part| part.quantity != first.quantity) {
@@ -236,8 +237,8 @@ pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<
 /// Cuts a recording into segments and computes their spectra.
 ///
 /// # Errors
-/// When the sample rate leaves no useful band, when no segment is found, or when the setup's
-/// response is zero or not finite in the band.
+/// Returns an error if the sample rate leaves no useful band, if no segment is found, or if the
+/// setup's response is zero or not finite in the band.
 pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,

@@ -53,9 +53,10 @@ pub struct SegmentedTake {
 /// differs from the given condition by more than 10 % are left out.
 ///
 /// # Errors
-/// When the recording is too short, its sample rate is too low, or no segment remains. Also when
-/// the setup's response is zero or not finite in the band, or when a speed or force is out of
-/// range. If `strict` is true, findings that are errors or warnings also cause an error.
+/// Returns an error if the recording is too short, its sample rate is too low, or no segment
+/// remains. Also returns an error if the setup's response is zero or not finite in the band, or if
+/// a speed or force is out of range. If `strict` is true, findings that are errors or warnings also
+/// cause an error.
 pub fn segment_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -144,8 +145,8 @@ pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorErr
 /// error.
 ///
 /// # Errors
-/// When the file cannot be opened, or an option does not apply. A file that is not a recording is
-/// reported as a finding.
+/// Returns an error if the file cannot be opened, or an option does not apply. A file that is not a
+/// recording is reported as a finding.
 pub fn validate_recording(
     path: &Path,
     read: &ReadOptions,
@@ -159,7 +160,7 @@ pub fn validate_recording(
 /// file `path` is not opened.
 ///
 /// # Errors
-/// When an option does not apply.
+/// Returns an error if an option does not apply.
 pub fn validate_recording_bytes(
     path: &Path,
     bytes: &[u8],

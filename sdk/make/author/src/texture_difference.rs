@@ -39,7 +39,7 @@ pub struct EntryChange {
 pub struct ModelDifference {
     /// Id of the model.
     pub model: String,
-    /// The difference at each condition of the first texture at which the spectra differ. If the
+    /// One entry for each condition of the first texture at which the spectra differ. If the
     /// quantities or the bands of the textures differ, spectra cannot be compared, and the list is
     /// empty.
     pub at: Vec<DifferenceAt>,
@@ -66,7 +66,7 @@ impl TextureDifference {
     /// Compares two textures, of which the first is the reference.
     ///
     /// # Errors
-    /// When a representation cannot be read, or a model refuses its parameters.
+    /// Returns an error if a representation cannot be read, or if a model refuses its parameters.
     pub fn new(a: &Texture, b: &Texture) -> Result<Self, AuthorError> {
         let (first, second) = (a.manifest(), b.manifest());
         let only = |one: &[Condition], other: &[Condition]| {

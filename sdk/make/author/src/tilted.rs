@@ -1,17 +1,19 @@
 //! Extra conditions for a texture that was recorded at a single speed: one at a slower and one at a
 //! faster speed.
 //!
-//! If the contact is unknown, a player uses the same shape of the spectrum at every speed, and
-//! changes only the level. But in recorded strokes of fingertips, the level of high frequencies
-//! rises faster with the speed than the level of low frequencies. At a frequency f, the exponent of
-//! the level was about 0.7 + 0.28 log2(f / 250 Hz). This change of the exponent is called the tilt.
-//! If a texture was recorded at three speeds or more, the recordings themselves show the tilt. If a
-//! texture was recorded at one speed, htex assumes half of the measured tilt, because materials
-//! differ. The tilt was 0.51 per octave for one material and 0.07 for another. Half of the tilt
-//! reduces the error for both materials (`docs/real-recordings.md`).
+//! If the contact (the finger or tool that slid over the surface) is unknown, a player uses the
+//! same shape of the spectrum at every speed, and changes only the level. But in recorded strokes
+//! of fingertips, the level of high frequencies rises faster with the speed than the level of low
+//! frequencies. At a frequency f, the level was about proportional to the speed raised to the
+//! exponent 0.7 + 0.28 log2(f / 250 Hz). The change of this exponent from octave to octave is
+//! called the tilt. If a texture was recorded at three speeds or more, the recordings themselves
+//! show the tilt. If a texture was recorded at one speed, htex assumes half of the tilt that was
+//! measured in the fingertip strokes, because materials differ. The tilt was 0.51 per octave for
+//! one material and 0.07 for another. Half of the tilt reduces the error for both materials
+//! (`docs/real-recordings.md`).
 //!
 //! The two conditions are stored like recorded conditions, so the player and the file format need
-//! no rule for the tilt. The level of the two conditions follows the law.
+//! no rule for the tilt. The level of the two conditions follows the texture's scaling law.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Contact, ExponentSource, Law};

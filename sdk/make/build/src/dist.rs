@@ -1,6 +1,7 @@
 //! The folder of a build's results. A file is written under a temporary name and then renamed. A
-//! file that already has the same bytes is not written. Its modification time therefore remains the
-//! time when its contents last changed. Links in the folder are not followed ([`OwnFolder`]).
+//! file is not written again if it already has the same bytes. Its modification time therefore
+//! remains the time when its contents last changed. Links in the folder are not followed
+//! ([`OwnFolder`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -16,7 +16,7 @@ use crate::state::{STATE, StateFolder};
 /// build is using the folder.
 ///
 /// # Errors
-/// If the report cannot be written.
+/// Returns an error if the report cannot be written.
 pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<bool, BuildError> {
     let dist = Dist::new(output);
     // The folder may come from somebody else, so a link in it is not followed.

@@ -7,7 +7,8 @@ use htex_format::{Contact, Manifest};
 
 use crate::BuildError;
 
-/// A property that textures must have: a field and a pattern of its values.
+/// A property that textures must have: a field, and a pattern that the value of the field must
+/// match.
 ///
 /// ```
 /// let filter: htex_build::Filter = "license=CC*".parse()?;

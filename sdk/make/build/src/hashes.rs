@@ -61,7 +61,8 @@ impl Stamp {
     /// Returns the stamp of a local file: its size and times.
     ///
     /// # Errors
-    /// Returns errors of the system. Also returns an error if the file has no time of change.
+    /// Returns errors of the system. Also returns an error if the system does not state when the
+    /// file changed.
     pub fn read(file: &Path) -> io::Result<Self> {
         Self::of_metadata(&file.metadata()?)
     }

@@ -16,7 +16,7 @@ use crate::job::shown_path;
 use crate::plan::{PlannedRecording, PlannedTexture};
 use crate::recipe::Gates;
 
-/// What kind of files a texture is made from.
+/// The kinds of files from which a recipe can make a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FileKind {

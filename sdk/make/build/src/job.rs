@@ -305,7 +305,7 @@ impl Job {
     /// [`Outcome::Refused`].
     ///
     /// # Errors
-    /// If a file cannot be read, or has changed since it was hashed.
+    /// Returns an error if a file cannot be read, or has changed since it was hashed.
     pub fn run(&self, workbench: &mut Workbench) -> Result<JobResult, BuildError> {
         let Some(copied) = self.copied(&workbench.remote)? else {
             return self.run_here(workbench);
@@ -406,7 +406,7 @@ impl Workbench {
     /// on the server from which the recipe comes ([`Job::origin`]).
     ///
     /// # Errors
-    /// If the job's origin is not a location.
+    /// Returns an error if the job's origin is not a location.
     pub fn of_job(limits: WasmLimits, job: &Job) -> Result<Self, BuildError> {
         let origin = job.origin.as_ref().map(|origin| Location::parse(origin.as_ref()));
         Ok(Self {

@@ -46,7 +46,7 @@ pub struct Record {
 pub enum Outcome {
     /// The texture was fitted or imported, and the result contains its asset.
     Fitted,
-    /// The gate `strict` refused the texture, because its recordings have findings.
+    /// With `strict`, the build refused the texture because its recordings have findings.
     NotStrict(String),
     /// A recording, a setting or a model cannot be used.
     Refused(String),
@@ -90,7 +90,7 @@ impl JobResult {
     /// Encodes the result for the job with this key.
     ///
     /// # Errors
-    /// If the record cannot be written as JSON.
+    /// Returns an error if the record cannot be written as JSON.
     pub fn to_bytes(&self, key: &str) -> Result<Vec<u8>, BuildError> {
         let mut header = Header {
             key: key.to_owned(),
@@ -110,7 +110,7 @@ impl JobResult {
     /// Decodes the result of the job with this key.
     ///
     /// # Errors
-    /// If the bytes are the result of another job, or if any bit has changed.
+    /// Returns an error if the bytes are the result of another job, or if any bit has changed.
     pub fn from_bytes(key: &str, bytes: &[u8]) -> Result<Self, BuildError> {
         let damaged = |problem: &str| BuildError::Damaged(problem.to_owned());
         let line = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n');

@@ -51,7 +51,7 @@ pub struct BuildOptions {
     /// Plugins that the user names. A plugin is a WASM module or a native library. Native libraries
     /// run with all rights of this program. A recipe can name only WASM modules.
     pub plugins: Vec<PathBuf>,
-    /// Whether to refuse to remove textures of the previous library.
+    /// Whether the build fails if it would remove textures of the previous library.
     pub no_removals: bool,
     /// The URI to which the results are copied. If there is no previous library on this machine,
     /// the build looks for removed textures in the library at this URI.
@@ -194,7 +194,7 @@ impl Build {
     /// existing models, and the gates must name models that are fitted.
     ///
     /// # Errors
-    /// The first problem, with its place in the recipe.
+    /// Returns the first problem, with its place in the recipe.
     pub fn check(&self) -> Result<(), BuildError> {
         let mut workbench = self.workbench();
         let mut checked = BTreeSet::new();
@@ -265,9 +265,9 @@ impl Build {
     /// Runs the pending jobs, several at a time. Calls `done` after each job, from any thread.
     ///
     /// # Errors
-    /// If a file cannot be read or written. Also if a texture cannot be made and
-    /// [`BuildOptions::keep_going`] is false. Results that were finished before the error are
-    /// stored.
+    /// Returns an error if a file cannot be read or written. Also returns an error if a texture
+    /// cannot be made and [`BuildOptions::keep_going`] is false. Results that were finished before
+    /// the error are stored.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
         if let (Some((texture, problem)), false) =
             (self.failed_before.first(), self.options.keep_going)
@@ -349,7 +349,7 @@ impl Build {
     /// the report stay as an earlier build wrote them.
     ///
     /// # Errors
-    /// If the report cannot be written.
+    /// Returns an error if the report cannot be written.
     pub fn report_failure(&self, error: &[String]) -> Result<(), BuildError> {
         put_failure(&self.dist, &self.options.program, error)
     }
@@ -357,8 +357,9 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue. Returns the report.
     ///
     /// # Errors
-    /// If jobs are still pending, or if a file cannot be written. Also if a texture of the previous
-    /// library is left out although the options forbid removals. In this case, no file is written.
+    /// Returns an error if jobs are still pending, or if a file cannot be written. Also returns an
+    /// error if a texture of the previous library is left out although the options forbid removals.
+    /// In this case, no file is written.
     pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -445,8 +446,8 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
 /// Hashes a local or remote file of a recipe.
 ///
 /// # Errors
-/// If the file cannot be read, if it changes while it is read, or if the recipe is not allowed to
-/// name the file's address.
+/// Returns an error if the file cannot be read, if it changes while it is read, or if the recipe is
+/// not allowed to name the file's address.
 pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
     hash(file, &RemoteFiles::temporary(remote_location(recipe)?))
 }
@@ -455,7 +456,7 @@ pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
 /// the next build reads the file again.
 ///
 /// # Errors
-/// If the folder cannot be written, or is in use by another build.
+/// Returns an error if the folder cannot be written, or is in use by another build.
 pub fn remember(
     output: &Path,
     hashed: impl IntoIterator<Item = (PathBuf, FileHash)>,

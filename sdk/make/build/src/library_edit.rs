@@ -60,7 +60,7 @@ pub struct LibraryEdit {
 pub enum Addition {
     /// The file of a texture, and its name in the library.
     Texture { name: String, file: PathBuf },
-    /// All textures of another library, under their names.
+    /// All textures of another library, each under its own name.
     Library(PathBuf),
 }
 
@@ -96,11 +96,11 @@ impl LibraryEdit {
     /// the number of textures edited so far.
     ///
     /// # Errors
-    /// - A file cannot be read or written.
-    /// - The library lacks a texture that the edit removes or renames, or that the table of
-    ///   metadata names.
-    /// - A new name is already the name of another texture in the library.
-    /// - A changed texture would not be valid, or states no licence.
+    /// - Returns an error if a file cannot be read or written.
+    /// - Returns an error if the library lacks a texture that the edit removes or renames, or that
+    ///   the table of metadata names.
+    /// - Returns an error if a new name is already the name of another texture in the library.
+    /// - Returns an error if a changed texture would not be valid, or states no licence.
     ///
     /// After an error, the file at `output` is unchanged.
     pub fn run(

@@ -49,7 +49,7 @@ impl BuildsMerge {
     /// Merges the folders into `output`. The library is called `name`.
     ///
     /// # Errors
-    /// - A folder has no report, or a file cannot be read or written.
+    /// - Returns an error if a folder has no report, or if a file cannot be read or written.
     /// - Returns the errors of [`LibraryMerge::run`].
     pub fn run(&self, output: &Path, name: &str) -> Result<Report, BuildError> {
         let builds = self.folders.iter().map(|(folder, prefix)| Built::open(folder, prefix));

@@ -78,7 +78,7 @@ impl MetadataTable {
 /// Parses the text of one metadata entry. Several tags are separated by `;` or `,`.
 ///
 /// # Errors
-/// When the text of a law is malformed.
+/// Returns an error if the text of a law is malformed.
 pub fn metadata_value(name: &str, text: &str) -> Result<Value, String> {
     match name {
         "tags" => Ok(text.split([';', ',']).map(|tag| Value::from(tag.trim())).collect()),

@@ -38,7 +38,7 @@ pub struct PlannedTexture {
     pub name: String,
     /// Recordings of the texture, sorted by file.
     pub recordings: Vec<PlannedRecording>,
-    /// What kind of files the recordings are.
+    /// The kind of the recordings' files.
     pub kind: FileKind,
     /// Settings of the texture. Paths in the settings are relative to the recipe.
     pub settings: Settings,

@@ -61,13 +61,13 @@ struct CopiedFile {
 }
 
 impl Destination {
-    /// Parses an argument: a folder, or a folder's URI (`s3://`, `gs://`, `az://`). Results for a
-    /// URI are made in the folder `work`, which also contains stored results for the next build. If
-    /// `work` is `None`, a folder in the user's cache is used.
+    /// Parses an argument: a folder, or a folder's URI (`s3://`, `gs://`, `az://`). The build makes
+    /// results for a URI in the folder `work`. This folder also contains stored results for the
+    /// next build. If `work` is `None`, a folder in the user's cache is used.
     ///
     /// # Errors
-    /// If the URI is malformed or read-only, or if `work` is `None` and the environment names no
-    /// folder for caches.
+    /// Returns an error if the URI is malformed or read-only. Also returns an error if `work` is
+    /// `None` and the environment names no folder for caches.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
         let Some(location) = remote_location(Path::new(argument))? else {
             let location = Location::parse(argument)?;
@@ -99,11 +99,11 @@ impl Destination {
     }
 
     /// Tests whether a file can be written at the URI and removed again. Call this function before
-    /// fitting. An error then shows at once, and not after hours of work. Without a URI, does
-    /// nothing.
+    /// fitting. A program that calls this function first can report an error at once, and not after
+    /// hours of work. Without a URI, does nothing.
     ///
     /// # Errors
-    /// If the file cannot be written or removed.
+    /// Returns an error if the file cannot be written or removed.
     pub fn try_out(&self) -> Result<(), BuildError> {
         let Some(to) = &self.remote else {
             return Ok(());
@@ -119,8 +119,8 @@ impl Destination {
     /// of copied files.
     ///
     /// # Errors
-    /// If a file cannot be read or written. The next call then copies the files that are not yet at
-    /// the URI.
+    /// Returns an error if a file cannot be read or written. The next call then copies the files
+    /// that are not yet at the URI.
     pub fn publish(&self) -> Result<usize, BuildError> {
         match &self.remote {
             Some(to) => Publishing::new(&self.folder, to)?.run(),

@@ -1,5 +1,5 @@
-//! Explains why a texture has to be fitted. To find the reason, the current inputs of the fit are
-//! compared with the inputs in the last finished build.
+//! Explains why a texture has to be fitted. To find the reason, this module compares the current
+//! inputs of the fit with the inputs in the last finished build.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,11 +16,11 @@ const FILE: &str = "fits.json";
 /// Largest size of that file, bytes: a few million textures.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Why a texture has to be fitted.
+/// The reason why a texture has to be fitted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Why {
-    /// No build of this user has fitted the texture in this folder yet.
+    /// In this folder, no build of this user has fitted the texture yet.
     New,
     /// Inputs of the fit have changed. The list contains the names of the changed inputs. The
     /// possible names, in this order, are `recordings`, `reading`, `options`, `plugins` and

@@ -82,7 +82,7 @@ pub enum MissingTextures {
     /// They are removed.
     #[default]
     Remove,
-    /// They stay in the library as they are, byte for byte.
+    /// These textures stay in the library as they are, byte for byte.
     Keep,
 }
 
@@ -148,8 +148,8 @@ pub struct Settings {
     /// Who made the texture, and from what.
     #[serde(flatten)]
     pub metadata: Metadata,
-    /// WASM modules with models that are fitted and then embedded in the asset. Paths are relative
-    /// to the recipe.
+    /// WASM modules with models: the build fits the models and then embeds the modules in the
+    /// asset. Paths are relative to the recipe.
     pub embed_plugins: Option<Vec<PathBuf>>,
     /// Speed and normal force of the recordings.
     pub at: At,
@@ -237,8 +237,8 @@ impl Recipe {
     /// Parses the text of a recipe.
     ///
     /// # Errors
-    /// If the text is not TOML, has keys or values that a recipe cannot have, or lists a code in
-    /// `gates.deny` that no finding has.
+    /// Returns an error if the text is not TOML, has keys or values that a recipe cannot have, or
+    /// lists a code in `gates.deny` that no finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;

@@ -101,7 +101,7 @@ impl Entry {
     /// Parses an entry, and checks everything except the entry's files.
     ///
     /// # Errors
-    /// Says which rule the entry breaks.
+    /// Returns an error that says which rule the entry breaks.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
         let entry: Self =

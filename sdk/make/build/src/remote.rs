@@ -1,5 +1,5 @@
-//! Remote files of a recipe. Their paths are URIs of a web server or an object store. This module
-//! lists and hashes remote files, and copies them for the job that reads them.
+//! Remote files of a recipe. Remote files have URIs of a web server or an object store as their
+//! paths. This module lists and hashes remote files, and copies them for the job that reads them.
 //!
 //! Listing the files also gives their versions, which show whether a file has changed. As with
 //! local files, the key of a job depends on the hash of a file's contents. The machine that runs

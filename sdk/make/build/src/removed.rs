@@ -62,7 +62,8 @@ fn report_at(location: &Location) -> Option<Report> {
     serde_json::from_slice(&bytes).ok()
 }
 
-/// Lists texture names briefly. Names in the same folder are replaced by the folder: `hatt/…`.
+/// Lists texture names briefly. Several names in the same folder are shortened to the folder:
+/// `hatt/…`.
 ///
 /// ```
 /// let names = ["hatt/cork", "hatt/felt", "oak"].map(str::to_owned);

@@ -25,8 +25,8 @@ pub struct Report {
     pub report: String,
     /// Program and version that made the build.
     pub program: String,
-    /// The error that ended the build, line by line; empty if the build succeeded. If there is an
-    /// error, all other fields come from the report of the earlier build, if such a report exists.
+    /// The error that ended the build, line by line; empty if the build succeeded. After an error,
+    /// all other fields come from the report of the earlier build, if there is one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library that the build made.
@@ -35,8 +35,8 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Names of textures that the recipe no longer makes but that stay in the library, as an
-    /// earlier build made them.
+    /// Names of textures that an earlier build made and the recipe no longer makes, but that stay
+    /// unchanged in the library.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<String>,
     /// For each model (by id), counts of textures in the library. `below_difference_threshold`
@@ -144,9 +144,10 @@ pub struct AssetReport {
     /// Smallest and largest normal force of the conditions, newtons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<[f64; 2]>,
-    /// Smallest number of segments of a condition; 0 for a texture that was imported without a fit.
+    /// Smallest number of segments over all conditions; 0 for a texture that was imported without a
+    /// fit.
     pub segments: usize,
-    /// Largest repeatability value of a condition, decibels. This value is the RMS difference
+    /// Largest repeatability value over all conditions, decibels. This value is the RMS difference
     /// between odd and even blocks of time, over nine bands, divided by √2. Errors near or below
     /// this value are within the recordings' own variation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -157,13 +158,13 @@ pub struct AssetReport {
     /// Largest nine-band RMS error over all conditions, decibels, for each model (by id).
     pub band_error_rms_db: BTreeMap<String, f64>,
     /// For each model (by id), how much of its difference from the recordings can be felt. Each
-    /// number is the worst over all conditions.
+    /// number is the worst value over all conditions.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
     /// Findings about the texture's recordings, grouped by code.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<FindingReport>,
-    /// Warnings of the fit, including those from findings.
+    /// Warnings of the fit, including warnings that come from findings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The recorded spectrum of the first condition. For a texture that was imported without a fit,

@@ -108,8 +108,8 @@ impl Android {
     /// Reads an effect from JSON.
     ///
     /// # Errors
-    /// When the file is not JSON, has another structure, or breaks a rule of Android's builders.
-    /// The fault names the place.
+    /// Returns an error if the file is not JSON, has another structure, or breaks a rule of
+    /// Android's builders. The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let effect: Self = json::read(bytes)?;
         if effect.format != FORMAT {
@@ -148,7 +148,8 @@ impl Android {
     /// and no point may be too short.
     ///
     /// # Errors
-    /// When the device would refuse an envelope or a point. The fault names this envelope or point.
+    /// Returns an error if the device would refuse an envelope or a point. The error names this
+    /// envelope or point.
     pub fn check_device(&self, profile: &Profile) -> Result<(), Fault> {
         let waveform = self.waveform_envelope.control_points.iter();
         let basic = self.basic_envelope.control_points.iter();

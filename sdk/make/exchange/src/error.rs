@@ -61,7 +61,7 @@ pub enum ExchangeError {
     /// this value.
     #[error("{}", not_said(.format, .missing, &keyword))]
     Missing { format: &'static str, missing: Vec<Missing> },
-    /// A given setting does not apply to this format.
+    /// The user gave a setting that does not apply to this format.
     #[error("{}", unused(.format, .way, .setting, .takes, &keyword))]
     Unused {
         format: &'static str,
@@ -72,7 +72,7 @@ pub enum ExchangeError {
         /// The settings that the format accepts.
         takes: Vec<&'static str>,
     },
-    /// A given number is out of range.
+    /// The user gave a number that is out of range.
     #[error("{name} {value}: {range}")]
     OutOfRange {
         /// The setting as a keyword, such as `full_scale`.

@@ -164,8 +164,8 @@ pub struct ActuatorPlay {
 /// measures the loss.
 ///
 /// # Errors
-/// When the format cannot be written or does not accept a setting, when a number is out of range,
-/// when the actuator cannot play such files, or when the asset cannot be played.
+/// Returns an error if the format cannot be written or does not accept a setting, if a number is
+/// out of range, if the actuator cannot play such files, or if the asset cannot be played.
 pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;

@@ -10,7 +10,8 @@ use crate::job::{Job, WrittenSignal};
 use crate::profile::Profile;
 use crate::rights::RightsPlace;
 
-/// Sample rate of imported signals, hertz. Envelopes and losses are measured at the same rate.
+/// Sample rate of imported signals, hertz. Envelopes, and the losses of an export, are measured at
+/// the same rate.
 pub const RATE_HZ: f64 = 8_000.0;
 
 /// A file format that can be imported, exported or both.
@@ -136,7 +137,8 @@ const OF_STROKES: &[&str] = &["speed", "force", "seconds"];
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
-    /// Returns the keywords of the settings that the import accepts, except metadata.
+    /// Returns the keywords of the settings that the import accepts, without the keywords of
+    /// metadata.
     #[must_use]
     pub fn settings(&self) -> Vec<&'static str> {
         match self {
@@ -179,7 +181,7 @@ impl Format {
     /// Checks that an import accepts the given settings, which are keywords such as `full_scale`.
     ///
     /// # Errors
-    /// When a setting does not apply; the error names the first such setting.
+    /// Returns an error if a setting does not apply; the error names the first such setting.
     ///
     /// ```
     /// use htex_exchange::Format;
@@ -200,7 +202,7 @@ impl Format {
     /// stroke determines both.
     ///
     /// # Errors
-    /// When a setting does not apply; the error names the first such setting.
+    /// Returns an error if a setting does not apply; the error names the first such setting.
     pub fn check_export<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,
@@ -218,7 +220,7 @@ impl Format {
     /// motion and seed, so settings for these do not apply.
     ///
     /// # Errors
-    /// When a setting does not apply; the error names the first such setting.
+    /// Returns an error if a setting does not apply; the error names the first such setting.
     pub fn check_export_of_scene<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,

@@ -106,7 +106,8 @@ impl Format {
     /// Finds a format by its name, for an export.
     ///
     /// # Errors
-    /// When no format has the name. The error lists the formats that can be exported.
+    /// Returns an error if no format has the name. The error lists the formats that can be
+    /// exported.
     pub fn find_for_export(name: &str) -> Result<&'static Self, ExchangeError> {
         Self::find(name).ok_or_else(|| unknown_name("format", name, exported()))
     }
@@ -114,8 +115,8 @@ impl Format {
     /// Finds the format with which a file is imported, by the file's extension.
     ///
     /// # Errors
-    /// When no format that can be imported has this extension. The error lists the formats that can
-    /// be imported.
+    /// Returns an error if no format that can be imported has this extension. The error lists the
+    /// formats that can be imported.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
         let extension =
             file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();

@@ -4,11 +4,11 @@
 //!
 //! The code follows the published specification (*.haptic File Specification 1.0*,
 //! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As the specification requires, a
-//! frequency point after the end of the amplitude envelope is an error. There is one exception,
-//! because earlier editors wrote such points: the last frequency point may lie after this end if
-//! the frequency point before it lies before this end. A frequency in the file is a position in an
-//! actuator's frequency range, so a profile is needed to convert it to hertz. Without frequency
-//! points, the frequency is at the position 0.5.
+//! frequency point after the end of the amplitude envelope is an error. There is one exception, for
+//! files that earlier editors wrote: the last frequency point may lie after this end if all other
+//! frequency points lie before this end. A frequency in the file is a position in an actuator's
+//! frequency range, so the reader needs the actuator's profile to convert this position to hertz.
+//! Without frequency points, the frequency is at the position 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -68,7 +68,8 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    /// The frequency envelope. If it is missing, null or empty, there are no frequency points.
+    /// The frequency envelope. If this field is missing, null or empty, the file has no frequency
+    /// points.
     #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
 }
@@ -110,8 +111,8 @@ impl Haptic {
     /// Reads a `.haptic` file.
     ///
     /// # Errors
-    /// When the file is not JSON, has another version or structure, or breaks a rule of the format.
-    /// The fault names the place.
+    /// Returns an error if the file is not JSON, has another version or structure, or breaks a rule
+    /// of the format. The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let haptic: Self = json::read(bytes)?;
         haptic.check()?;

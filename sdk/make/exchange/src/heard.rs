@@ -212,12 +212,12 @@ impl Playing<'_> {
 impl Path {
     /// Makes the path of a finger that moves at a constant speed (mm/s) and force (N). If one of
     /// the values is missing, it comes from the default condition of the representation with this
-    /// model. If the default condition does not state the value either, the value is the speed or
-    /// force of the study of Balasubramanian & Vardar 2026 (80 mm/s, 0.4 N). If both values are
-    /// missing, the finger moves at the asset's default condition.
+    /// model. If the default condition does not state the value either, the value comes from the
+    /// study of Balasubramanian & Vardar 2026 (80 mm/s, 0.4 N). If both values are missing, the
+    /// finger moves at the asset's default condition.
     ///
     /// # Errors
-    /// When the asset has no representation with this model.
+    /// Returns an error when the asset has no representation with this model.
     pub fn at(
         asset: &Texture,
         model: Option<&str>,

@@ -71,9 +71,9 @@ pub struct ImportedAsset {
 /// Imports a file as an asset. `file` is the file's name; its extension determines the format.
 ///
 /// # Errors
-/// When no format has the extension, when the format does not accept a given setting, when both the
-/// file and the settings lack a necessary value, when the file is invalid (the error names the
-/// place), or when no model can be fitted.
+/// Returns an error if no format has the extension, if the format does not accept a given setting,
+/// if neither the file nor the settings contain a necessary value, if the file is invalid (the
+/// error names the place), or if no model can be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -185,7 +185,7 @@ impl ImportedAsset {
     /// this asset are returned unchanged. If not, the imported asset is encoded.
     ///
     /// # Errors
-    /// When the asset breaks a rule of its format.
+    /// Returns an error if the asset breaks a rule of its format.
     pub fn to_bytes(&self) -> Result<Vec<u8>, htex_format::WriteError> {
         match &self.file {
             Some(bytes) => Ok(bytes.clone()),

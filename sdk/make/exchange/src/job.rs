@@ -23,7 +23,7 @@ impl Coding {
     /// Finds a coding by its name, `vectorial` or `wavelet`.
     ///
     /// # Errors
-    /// When no coding has the name. The error lists all names.
+    /// Returns an error if no coding has this name. The error lists all names.
     pub fn find(name: &str) -> Result<Self, ExchangeError> {
         let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
         let (_, coding) =

@@ -37,7 +37,8 @@ const MOST_FORCE_N: f64 = 1e3;
 /// is the file's name.
 ///
 /// # Errors
-/// When no format has the file's extension, or the file is invalid. The error names the place.
+/// Returns an error if no format has the file's extension, or the file is invalid. The error names
+/// the place.
 ///
 /// ```
 /// let file = br#"{"Version": 1, "Pattern": [{"Event": {"Time": 0, "EventType": "HapticTransient"}}]}"#;
@@ -85,8 +86,8 @@ impl Physical {
     /// Checks that all values that the format needs are given and in range.
     ///
     /// # Errors
-    /// When a value is missing or out of range. The error names all missing values, or the first
-    /// value that is out of range.
+    /// Returns an error if a value is missing or out of range. The error names all missing values,
+    /// or the first value that is out of range.
     pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
         self.values(format).map(drop)
     }

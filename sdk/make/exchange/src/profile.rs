@@ -82,7 +82,7 @@ impl Profile {
     /// Finds a profile by its name.
     ///
     /// # Errors
-    /// When no profile has the name. The error lists all names.
+    /// Returns an error if no profile has the name. The error lists all names.
     pub fn find(name: &str) -> Result<&'static Self, ExchangeError> {
         let found = PROFILES.iter().find(|profile| profile.name == name);
         found.ok_or_else(|| unknown_name("profile", name, profile_names()))

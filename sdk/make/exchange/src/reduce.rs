@@ -2,15 +2,16 @@
 //! samples.
 //!
 //! **One tone.** In each block, the power of each band is divided by the squared detection
-//! threshold in this band. The sum over all bands measures how strongly a finger feels the block.
-//! The tone gets the level at which a finger feels the tone as strongly as the block, according to
-//! the detection threshold at the tone's frequency. The tone's frequency is the geometric mean of
-//! the bands' frequencies, weighted by each band's share of this sum, and limited to the actuator's
-//! range. If the actuator is too weak at this frequency, the frequency moves towards the resonance
-//! until the actuator is strong enough. If the actuator is too weak at every frequency, it plays
-//! the strongest possible tone, and the export counts this block as too strong for the actuator.
-//! **Samples** are filtered by the inverse of the actuator's response. This filter raises no
-//! frequency by more than 12 dB.
+//! threshold in this band. The sum of these quotients over all bands measures how strongly a finger
+//! feels the block. The tone's level is the level at which a finger feels the tone as strongly as
+//! the block. It follows from the detection threshold at the tone's frequency. The tone's frequency
+//! is the geometric mean of the bands' frequencies, limited to the actuator's range. Each band has
+//! its share of the sum as its weight in this mean. If the actuator is too weak at this frequency,
+//! the export moves the frequency towards the actuator's resonance until the actuator is strong
+//! enough. If the actuator is too weak at every frequency, it plays the strongest tone that it can
+//! produce, and the export counts this block as too strong for the actuator. **Samples.** The
+//! export filters the asset's vibration by the inverse of the actuator's response. This filter
+//! raises no frequency by more than 12 dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;

@@ -23,7 +23,7 @@ impl Stroke {
     /// with time, position and force.
     ///
     /// # Errors
-    /// Returns the errors of [`htex_author::recording::read_trace`], except that positions may be
+    /// Returns the same errors as [`htex_author::recording::read_trace`]. However, positions may be
     /// missing if the file has a speed.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_stroke(path)?))

@@ -125,7 +125,7 @@ pub enum Place {
     Line(usize),
     /// A row of numbers, counted from 1.
     Row(usize),
-    /// The name of another place: a byte, a channel, a data set or a cell.
+    /// A place of another kind, by its name: a byte, a channel, a data set or a cell.
     Named(String),
 }
 

@@ -1,5 +1,5 @@
 //! Recordings of a finger sliding on a texture, and the readers of their files. The crate always
-//! reads CSV. To read any other of the [`FORMATS`], enable the Cargo feature of this format.
+//! reads CSV. To read another of the [`FORMATS`], enable the Cargo feature of that format.
 //!
 //! ```no_run
 //! # use std::path::Path;

@@ -12,7 +12,7 @@ pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest magnitude of a sample, in any unit. It keeps sums of squares over hours finite.
 const LARGEST: f64 = 1e12;
 
-/// Why a recording cannot be constructed.
+/// The reason why a recording cannot be constructed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
@@ -162,8 +162,8 @@ impl Recording {
         })
     }
 
-    /// Adds the normal force, newtons. If the mean of the force is negative, all samples change
-    /// sign, because some sensors report pressing as negative.
+    /// Adds the normal force, newtons. Some sensors report pressing as negative. Therefore, all
+    /// samples change sign if the mean of the force is negative.
     ///
     /// # Errors
     /// Returns an error if the signal differs in length from the axes, or a value is not finite or
@@ -248,8 +248,8 @@ impl Recording {
         (self.first_sample + sample) as f64 / self.rate_hz
     }
 
-    /// Returns the magnitude of the signal at a sample: the length of the vector that its axes
-    /// form.
+    /// Returns the magnitude of the signal at a sample: the length of the vector formed by the
+    /// values of all axes.
     #[must_use]
     pub fn magnitude_at(&self, sample: usize) -> f64 {
         let square = |axis: &Vec<f64>| axis[sample] * axis[sample];
@@ -259,8 +259,8 @@ impl Recording {
         }
     }
 
-    /// Returns the name of an axis, such as `lateral_x` or `signal`, for messages and for the
-    /// pointers with which findings state a place.
+    /// Returns the name of an axis, such as `lateral_x` or `signal`. Messages use this name, and
+    /// findings use it to point to a place.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {

@@ -77,8 +77,8 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number is written with as few
-    /// digits as possible, so that reading it back gives the same floating-point number.
+    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Writes each number with the fewest
+    /// digits that read back as the same floating-point number.
     ///
     /// # Errors
     /// Returns an error if the writer fails.
@@ -92,16 +92,16 @@ impl SetupResponse {
     }
 }
 
-/// The frequency ranges in which the setup's response is so weak that division by it raises a
-/// spectrum by more than 10 dB.
+/// The frequency ranges in which the setup's response is weak: dividing a spectrum by the response
+/// raises the spectrum by more than 10 dB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RaisedRanges {
     /// For each range, its lowest and highest frequency in hertz, and its largest gain in decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
-/// Returns the frequency ranges in which gains exceed 10 dB, or `None` if no gain does. `gains` has
-/// one gain, as a factor, for each frequency in `frequency_hz`.
+/// Returns the frequency ranges in which gains exceed 10 dB, or `None` if no gain does. `gains`
+/// contains one factor (not decibels) for each frequency in `frequency_hz`.
 pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<RaisedRanges> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;

@@ -38,8 +38,8 @@ pub(crate) struct Placement {
 }
 
 impl Conditions {
-    /// Collects the conditions at which a representation was fitted. Triangles that the asset
-    /// stores are not used.
+    /// Collects the conditions at which a representation was fitted. The function triangulates the
+    /// conditions itself, and ignores the triangles that the asset stores.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         Self::in_mesh(Mesh::new(&points(at, conditions)), at, conditions, law)
     }

@@ -38,8 +38,8 @@ pub enum Error {
         "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
     NoEmbeddedModel { id: String },
-    /// The only model that can play a representation is embedded in the asset, and embedded models
-    /// may not run. [`crate::Texture::with_embedded`] allows them.
+    /// Only the model that is embedded in the asset can play the representation, and the program
+    /// has not allowed embedded models. [`crate::Texture::with_embedded`] allows them.
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"

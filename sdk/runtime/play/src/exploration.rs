@@ -1,4 +1,5 @@
-//! Playback at motions outside the recorded conditions. Voices and scenes share these rules.
+//! Rules for playback at motions outside the recorded conditions. Voices and scenes share these
+//! rules.
 
 use std::fmt;
 
@@ -73,8 +74,8 @@ impl Effects {
         Self { contact, ..self }
     }
 
-    /// No effects. A motion still selects the recorded condition, or interpolates between recorded
-    /// conditions.
+    /// No effects. The motion still determines which recorded condition the voice plays, or between
+    /// which recorded conditions it interpolates.
     pub const NONE: Self = Self { frequency_scaling: false, level_scaling: false, contact: false };
 }
 
@@ -95,7 +96,7 @@ impl Default for Effects {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Interval {
     /// The asset does not state this speed or force for every condition, or all stated values are
-    /// 0. The speed or force of the finger then has no effect.
+    /// 0. In both cases, the speed or force of the finger has no effect.
     Unknown,
     /// The conditions have one value, or several values between which the texture is interpolated.
     Between {
@@ -338,8 +339,8 @@ impl Coverage {
         if excess > 1e-9 { excess } else { 0.0 }
     }
 
-    /// Returns whether the texture is played as recorded, or interpolated between recordings. A
-    /// speed or force that the asset does not state is ignored.
+    /// Returns whether the texture is played as recorded, or interpolated between recordings. The
+    /// method ignores a speed or force that the asset does not state.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)

@@ -14,8 +14,9 @@
 //! [`Voice::render`] allocates no memory, takes no locks and does not access files, so it may run
 //! in an audio thread.
 //!
-//! This code is not part of `htex`, because `htex` re-exports `htex-scene`, and `htex-scene` needs
-//! this code. If `htex` contained this code, `htex` and `htex-scene` would depend on each other.
+//! The code of this crate is not part of `htex`, because `htex` re-exports `htex-scene`, and
+//! `htex-scene` needs this code. If `htex` contained this code, `htex` and `htex-scene` would
+//! depend on each other.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

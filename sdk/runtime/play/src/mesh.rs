@@ -11,8 +11,8 @@
 //! - If there are several Delaunay triangulations, as for a grid, the module `cells` chooses one.
 //! - A condition counts as lying on an edge of the hull if it equals its projection on this edge,
 //!   within the same tolerance. The narrow triangle between such a condition and the edge is not
-//!   used for interpolation. A motion inside this triangle, or next to it outside the hull, is
-//!   projected on the edge. The projection then determines the weights.
+//!   used for interpolation. A motion inside this triangle, or outside the hull next to this
+//!   triangle, is projected on the edge. The projection then determines the weights.
 //!
 //! The weights change continuously with the motion. At a recorded condition, only that condition's
 //! weight is not zero.
@@ -42,8 +42,8 @@ const ON_SIDE: f64 = 1e-9;
 const NO_WEIGHT: f64 = 1e-12;
 
 /// The weights with which up to three conditions are mixed for a motion. The weights sum to one.
-/// The weights are ordered by the speeds of their conditions, ascending, and at equal speeds by the
-/// forces, ascending.
+/// The weights are in ascending order of their conditions' speeds and, at equal speeds, in
+/// ascending order of the forces.
 ///
 /// ```
 /// use htex::play::Mesh;
@@ -145,7 +145,7 @@ impl Mesh {
     /// result is the same as from [`Self::new`].
     ///
     /// # Errors
-    /// Returns an error if the triangles are invalid: [`htex_format::check_triangles`].
+    /// Returns an error if [`htex_format::check_triangles`] finds that the triangles are invalid.
     pub fn with_triangles(
         conditions: &[[f64; 2]],
         triangles: &[Triangle],

@@ -73,8 +73,9 @@ impl Motion {
     /// Returns the motion if its numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Motion`] if the speed or the force is negative or not finite. [`Error::Position`]
-    /// if the position is not finite. [`Error::Place`] if the place is not finite.
+    /// Returns [`Error::Motion`] if the speed or the force is negative or not finite. Returns
+    /// [`Error::Position`] if the position is not finite. Returns [`Error::Place`] if the place is
+    /// not finite.
     ///
     /// ```
     /// use htex::Motion;

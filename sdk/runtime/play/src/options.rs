@@ -57,14 +57,14 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets the seed of the noise and phases. Voices with equal seeds have equal samples.
+    /// Sets the seed of the noise and phases. Voices with equal seeds produce equal samples.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// Sets the motion at the start, or `None` for the default condition
+    /// Sets the motion at the start; `None` selects the default condition
     /// ([`Representation::default_condition`](crate::Representation::default_condition)).
     #[must_use]
     pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
@@ -107,8 +107,8 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. With 0
-    /// bands, the voice computes no envelope.
+    /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. The number
+    /// may also be 0: the voice then computes no envelope.
     #[must_use]
     pub fn with_envelope_bands(mut self, bands: usize) -> Self {
         self.envelope_bands = bands;
@@ -117,16 +117,17 @@ impl VoiceOptions {
 
     /// Sets whether the texture becomes stronger and weaker in time as its recording did. This
     /// works only if the asset states the strength of the fluctuation
-    /// ([`htex_format::Fluctuation`]). By default the noise is stationary. The mean square of the
-    /// samples stays the same. Nobody has tested yet whether this fluctuation makes a texture feel
-    /// more real. A [`SampleSource`](crate::SampleSource) ignores this option.
+    /// ([`htex_format::Fluctuation`]). By default the noise is stationary. The fluctuation does not
+    /// change the mean square of the samples. Nobody has tested yet whether this fluctuation makes
+    /// a texture feel more real. A [`SampleSource`](crate::SampleSource) ignores this option.
     #[must_use]
     pub fn with_fluctuation(mut self, fluctuation: bool) -> Self {
         self.fluctuation = fluctuation;
         self
     }
 
-    /// Sets the effects of a motion. A [`SampleSource`](crate::SampleSource) ignores these effects.
+    /// Sets which effects the finger's motion has on the voice. A
+    /// [`SampleSource`](crate::SampleSource) ignores these effects.
     #[must_use]
     pub fn with_effects(mut self, effects: Effects) -> Self {
         self.effects = effects;

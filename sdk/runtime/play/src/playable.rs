@@ -9,10 +9,10 @@ use crate::Error;
 
 /// Returns the model in `registry` that plays a representation. Candidates are the models with the
 /// representation's id and major version, in the order of the registry. The function returns the
-/// first candidate that has the representation's fields and is not older than the version of the
-/// model that fitted the representation. If there is no such candidate, the function returns the
-/// first candidate that has the fields. If no candidate has the fields, the function returns the
-/// first candidate.
+/// first candidate that has the representation's fields and is not older than the model version
+/// that fitted the representation. If there is no such candidate, the function returns the first
+/// candidate that has the fields. If no candidate has the fields, the function returns the first
+/// candidate.
 ///
 /// ```no_run
 /// let asset = htex::Texture::open("sandpaper.htex")?;

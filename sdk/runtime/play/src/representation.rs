@@ -272,8 +272,8 @@ impl<'a> Representation<'a> {
         })
     }
 
-    /// Returns the index, in the manifest's conditions, of the default condition, which is played
-    /// when no motion is given. Loads no model.
+    /// Returns the index of the default condition (the condition that is played without a motion)
+    /// in the manifest's list of conditions. Loads no model.
     ///
     /// The default is the representation's first condition, unless this condition is silent. If it
     /// is silent, the default is the condition with the highest level among the conditions that are

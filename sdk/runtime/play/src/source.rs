@@ -1,4 +1,4 @@
-//! The source of a voice: unit-RMS samples at the model's own rate, and the level.
+//! The source of a voice's samples: samples with unit RMS at the model's own rate, and the level.
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 

@@ -1,4 +1,4 @@
-//! The spectrum of a voice whose frequencies and level are scaled.
+//! The spectrum of a voice, after its frequencies and its level are scaled.
 
 use htex_host::{Band, LoadedModel};
 

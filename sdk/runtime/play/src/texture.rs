@@ -30,7 +30,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Opens a file. The embedded and the built-in models can play it.
+    /// Opens a file. The embedded and the built-in models can play the texture.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, or is not a valid asset.
@@ -38,7 +38,7 @@ impl Texture {
         Ok(Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded())
     }
 
-    /// Opens an asset in memory. The embedded and the built-in models can play it.
+    /// Opens an asset in memory. The embedded and the built-in models can play the texture.
     ///
     /// # Errors
     /// Returns an error if the bytes are not a valid asset.
@@ -46,7 +46,7 @@ impl Texture {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
 
-    /// Opens a texture in a library. The embedded and the built-in models can play it.
+    /// Opens a texture in a library. The embedded and the built-in models can play the texture.
     ///
     /// ```no_run
     /// let library = htex::library::Library::open("cloth.htexlib".as_ref())?;
@@ -65,12 +65,12 @@ impl Texture {
         Self::from_bytes(&library.get(name)?)
     }
 
-    /// Makes a texture from the data of an asset. The built-in models can play it.
+    /// Makes a texture from the data of an asset. The built-in models can play the texture.
     pub fn new(data: htex_format::Asset) -> Self {
         Self::with_registry(data, Registry::builtin())
     }
 
-    /// Makes a texture from the data of an asset. The models in `registry` can play it.
+    /// Makes a texture from the data of an asset. The models in `registry` can play the texture.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
         let models = data.manifest.representations.iter();
         Self {
@@ -84,9 +84,9 @@ impl Texture {
     /// Allows embedded models to run, in a sandbox. An embedded model takes precedence over the
     /// models of the registry. There is one exception: a plugin that the user loaded by its file
     /// name takes precedence over the embedded model if the plugin can play the representation
-    /// ([`model_of`]). An embedded model is loaded when a representation with its id is first used.
-    /// This first use returns an error if the model cannot be loaded, or if its id or version
-    /// differs from the id or version that the asset declares.
+    /// ([`model_of`]). An embedded model is loaded when a representation that names the model's id
+    /// is first used. This first use returns an error if the model cannot be loaded, or if its id
+    /// or version differs from the id or version that the asset declares.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -151,7 +151,8 @@ impl Texture {
     }
 
     /// Returns a representation by the id or the short name of its model, such as `"bands"`. `None`
-    /// selects the best representation: the first of [`Self::ranked`] by the nine-band error.
+    /// selects the best representation: the first that [`Self::ranked`] returns for the nine-band
+    /// error.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;
@@ -188,7 +189,7 @@ impl Texture {
         self.representation(None)?.voice(options)
     }
 
-    /// Returns the magnitudes of the best representation at a motion.
+    /// Returns the spectral magnitudes that the best representation has at a motion.
     ///
     /// # Errors
     /// Returns the same errors as [`Representation::magnitude`].

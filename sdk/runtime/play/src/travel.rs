@@ -1,10 +1,10 @@
 //! The position of a finger on its path, given by the host or integrated from the speed.
 //!
-//! Position and place belong to the next sample that the *voice* renders
-//! ([`crate::SampleSource::follow`]). Position and place do not belong to the next sample of the
-//! source, because a resampler reads ahead of the voice. The number of samples that it reads ahead
-//! differs from call to call, and the resulting jitter would be audible. For a model that does not
-//! follow the motion itself, setting a motion costs one test of a `bool`.
+//! Position and place are the values at the time of the next sample that the *voice* renders
+//! ([`crate::SampleSource::follow`]). They are not the values at the time of the source's next
+//! sample, because a resampler reads ahead of the voice. The number of samples that the resampler
+//! reads ahead differs from call to call, and the resulting jitter would be audible. For a model
+//! that does not follow the motion itself, setting a motion costs one test of a `bool`.
 
 use crate::Motion;
 

@@ -211,8 +211,8 @@ impl Voice {
     /// Returns the magnitudes that a long recording of this voice would show at the current motion.
     /// Frequencies are in hertz, magnitudes in the asset's unit. The magnitudes include the
     /// effects, the [`ceiling`](VoiceOptions::with_ceiling) and the gain, but not the limiter. If
-    /// the spectrum or level is still changing to the current motion, the function returns the
-    /// magnitudes after the change. If the voice is silent, all magnitudes are 0.
+    /// the voice is still adapting to the current motion, the function returns the magnitudes that
+    /// the voice will have afterwards. If the voice is silent, all magnitudes are 0.
     ///
     /// # Errors
     /// Returns an error if the model refuses the parameters.

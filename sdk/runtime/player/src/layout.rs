@@ -18,7 +18,7 @@ pub const RANDOM_PHASE: u8 = 1;
 pub const FLUCTUATES: u8 = 2;
 /// Length of the fluctuation, bytes.
 pub const FLUCTUATION: usize = 8;
-/// Largest absolute offset of the fluctuation's logarithm, octaves.
+/// Largest absolute value of the offset that is added to the fluctuation's logarithm, octaves.
 pub const MOST_OFFSET: f32 = 16.0;
 /// Largest number of coefficients on one side of a noise filter; always a multiple of four.
 pub const MOST_HALF: usize = 320;
@@ -43,9 +43,9 @@ pub const RATE_HZ: (f32, f32) = (100.0, 1e6);
 pub const MOST_VALUE: f32 = 64.0;
 /// Highest level, in the asset's unit.
 pub const MOST_LEVEL: f32 = 1e9;
-/// Highest ceiling of the level and highest full scale, in the asset's unit.
+/// Largest ceiling of the level and largest full scale, in the asset's unit.
 pub const MOST_CEILING: f32 = 1e10;
-/// Largest absolute value of an exponent of the law.
+/// Largest absolute value of an exponent of the law for motions beyond the grid.
 pub const MOST_EXPONENT: f32 = 4.0;
 /// Lowest speed at which a finger slides, mm/s. Below this speed the player is silent.
 pub const MIN_SLIDING_MM_S: f32 = 0.5;

@@ -24,8 +24,8 @@ pub struct Costs {
     /// although the stage changes no samples. Interpolation and crossfades are not listed and count
     /// as 0.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Time per sample that the renderer itself takes, nanoseconds. The first value applies to a
-    /// scene in which nothing changes. The second value applies to a scene whose motion is read
+    /// Two times per sample that the renderer itself takes, nanoseconds. The first time applies to
+    /// a scene in which nothing changes. The second time applies to a scene whose motion is read
     /// before every block.
     pub renderer_ns: [f64; 2],
     /// Cost of the compensation filter, when a resampler requests short blocks from it.
@@ -40,7 +40,7 @@ pub struct Costs {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilterCost {
-    /// Time per sample without the multiplications, nanoseconds.
+    /// Time for each sample in addition to the multiplications, nanoseconds.
     pub sample_ns: f64,
     /// Time of one multiply-accumulate, nanoseconds.
     pub mac_ns: f64,

@@ -1,9 +1,9 @@
 //! Checks a scene's device, and combines the scene's settings with the user's settings. The user's
 //! settings take precedence.
 //!
-//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, an asset may
-//! contain accelerations, while the device plays newtons or is an electrovibration display. The
-//! device then plays the asset only if the scene or the user states a `quantity_gain`.
+//! These checks keep a scene from mixing up physical quantities ([`quantity_misfit`]). For example,
+//! an asset may contain accelerations, while the device plays newtons or is an electrovibration
+//! display. The device then plays the asset only if the scene or the user states a `quantity_gain`.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +47,7 @@ pub struct DeviceOverride {
     /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
     /// Default for a missing setting that names a file. If `None`, the default is a file in the
-    /// current folder with the scene's name and the extension of the format.
+    /// current folder with the scene's name and the file extension of the output format.
     pub output: Option<String>,
 }
 

@@ -37,8 +37,8 @@ pub struct SceneFile {
     /// Seed of all random numbers. The same seed gives the same samples.
     #[serde(default)]
     pub seed: u64,
-    /// Limits for the planner. The planner chooses a representation for each surface for which the
-    /// scene names none.
+    /// Limits for the planner. If the scene does not name a representation for a surface, the
+    /// planner chooses one.
     #[serde(default, skip_serializing_if = "Budget::is_empty")]
     pub budget: Budget,
     /// Effects that the scene switches on or off, instead of leaving the choice to the planner.
@@ -50,7 +50,7 @@ pub struct SceneFile {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Surface {
-    /// Path of the asset, or of a library with the name of one of its textures
+    /// Path of an asset, or path of a library followed by `#` and the name of one of its textures
     /// (`cloth.htexlib#woven/cotton`). Relative paths start at the scene's folder.
     pub asset: PathBuf,
     /// Region of the surface. Default: everywhere.
@@ -177,7 +177,7 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
-    /// Factor of all frequencies if the scene is played as sound. Default: 1.
+    /// Factor that multiplies all frequencies if the scene is played as sound. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
@@ -186,9 +186,9 @@ pub struct DeviceChoice {
     /// Relative paths start at the scene's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// Depth of the compensation, decibels below the response's maximum. At this depth, the gain is
-    /// half of the gain that would fully compensate the response. Farther below, the gain
-    /// decreases.
+    /// Depth of the compensation: a level, in decibels below the response's maximum. At a frequency
+    /// where the response has this level, the gain is half of the gain that would fully compensate
+    /// the response. Farther below, the gain decreases.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,

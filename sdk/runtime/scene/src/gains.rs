@@ -1,12 +1,12 @@
 //! Drive voltages (gains), one for each combination of a person, a texture and a device. Each
-//! person adjusts the voltage (the paper's V_g) by feeling the texture. The voltages are stored in
-//! a file in the user's configuration folder.
+//! person adjusts the voltage (V_g in the paper) while feeling the texture. The voltages are stored
+//! in a file in the user's configuration folder.
 //!
 //! A gain belongs to a texture, not to a file. The key of a gain contains the texture's name and
 //! author, because name and author stay the same after a new fit. The key contains no hash of the
 //! recordings, because this hash would change if a recording were added. The gain also stores the
-//! RMS at which the voltage was adjusted. If levels are not normalised, a representation with
-//! another RMS is therefore played proportionally stronger or weaker.
+//! RMS at which the voltage was adjusted. If levels are not normalised, a representation (a model's
+//! parameters in the asset) with another RMS is therefore played proportionally stronger or weaker.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -58,7 +58,7 @@ pub struct Gain {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub drive_v: f64,
     /// RMS that is mapped to this drive voltage, in the assets' unit. If levels are not normalised,
-    /// other representations are scaled relative to this RMS.
+    /// representations with another RMS are played stronger or weaker in proportion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
@@ -132,7 +132,8 @@ impl Gains {
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, is too large, or is not a gains file. Also
-    /// returns an error if it has unknown keys, which would be lost when the file is written again.
+    /// returns an error if the file has unknown keys, which would be lost when the file is written
+    /// again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),

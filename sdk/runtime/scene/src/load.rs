@@ -27,10 +27,10 @@ use crate::{Costs, Renderer, SceneError};
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
     pub models: &'a Registry,
-    /// Whether models embedded in assets may run (in their sandbox).
+    /// Whether models that are embedded in assets may run (in a sandbox).
     pub embedded: bool,
     /// The devices on which the scene may play. `None` means that the program takes the samples
-    /// itself, so that the scene's device is ignored.
+    /// itself instead of playing them on a device. The scene's device is then ignored.
     pub devices: Option<&'a Devices>,
 }
 
@@ -39,8 +39,8 @@ pub trait FileSource {
     /// Reads a file by its path, exactly as the scene states it.
     ///
     /// # Errors
-    /// [`io::ErrorKind::NotFound`] if there is no such file. The program may return any other
-    /// error.
+    /// Returns [`io::ErrorKind::NotFound`] if there is no such file. The program may return any
+    /// other error.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 }
 
@@ -92,13 +92,13 @@ const USUAL_RATE_HZ: f64 = 20_000.0;
 const RATES_HZ: Rates = Rates::Range { min_hz: 100.0, max_hz: 1e6 };
 
 impl Scene {
-    /// Opens a scene file and the files it names, for a program that takes the samples itself. The
-    /// built-in and the embedded models play the textures. The scene's device is ignored. A scene
-    /// beyond the default [`Limits`] is an error.
+    /// Opens a scene file and the files it names, for a program that takes the samples itself
+    /// instead of playing them on a device. The built-in and the embedded models play the textures.
+    /// The scene's device is ignored. A scene that exceeds the default [`Limits`] is an error.
     ///
     /// # Errors
-    /// [`SceneError::Io`] if the file cannot be read. [`SceneError::Invalid`] with all findings if
-    /// at least one finding is an error.
+    /// Returns [`SceneError::Io`] if the file cannot be read. Returns [`SceneError::Invalid`] with
+    /// all findings if at least one finding is an error.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let models = &Registry::builtin();
         let around = Surroundings { models, embedded: true, devices: None };
@@ -117,8 +117,8 @@ impl Scene {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
-    /// Opens a scene in memory and the files it names. Relative paths start at the folder of
-    /// `path`, but the file at `path` itself is not opened.
+    /// Opens a scene file whose contents are in memory, and the files that the scene names.
+    /// Relative paths start at the folder of `path`, but the file at `path` itself is not opened.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::open`].
@@ -132,8 +132,8 @@ impl Scene {
         Self::read(bytes, &Place::Folder(folder(path)), around, device)
     }
 
-    /// Opens a scene in memory whose files the program supplies. The field `folder` of the result
-    /// is empty.
+    /// Opens a scene file whose contents are in memory. The program supplies the files that the
+    /// scene names. The field `folder` of the result is empty.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::open`].
@@ -161,8 +161,8 @@ impl Scene {
     /// Makes a scene with one surface that covers everything, without a scene file.
     ///
     /// # Errors
-    /// Returns the same errors as [`Self::open`]. Pointers in findings refer to the equivalent
-    /// scene file.
+    /// Returns the same errors as [`Self::open`]. The findings point into the scene file that would
+    /// describe the same scene.
     pub fn of_asset(
         asset: &Path,
         motion: Motion,
@@ -188,9 +188,9 @@ impl Scene {
         finish(scene, findings)
     }
 
-    /// Plans the scene for a program that takes the samples itself, at `rate_hz` (100 Hz to 1 MHz)
-    /// and in the textures' unit. The plan depends neither on the scene's device nor on costs
-    /// measured on this machine.
+    /// Plans the scene for a program that takes the samples itself. The samples have the rate
+    /// `rate_hz` (100 Hz to 1 MHz) and the textures' unit. The plan depends neither on the scene's
+    /// device nor on computing times measured on this machine.
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -211,8 +211,9 @@ impl Scene {
         plan(&scene, &program, &Costs::embedded())
     }
 
-    /// Makes a renderer for a program that takes the samples itself, at `rate_hz` and in the
-    /// textures' unit ([`Self::plan`]). For a device, use [`crate::plan()`] and [`Renderer::new`].
+    /// Makes a renderer for a program that takes the samples itself. The samples have the rate
+    /// `rate_hz` and the textures' unit ([`Self::plan`]). For a device, use [`crate::plan()`] and
+    /// [`Renderer::new`].
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -240,8 +241,8 @@ impl Scene {
     }
 }
 
-/// The hint in findings that disappear if embedded models are allowed to run
-/// ([`Surroundings::embedded`]).
+/// A hint to allow embedded models to run ([`Surroundings::embedded`]), for findings that would
+/// then disappear.
 pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
 
 /// Validates a scene file and the files it names.

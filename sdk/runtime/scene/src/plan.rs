@@ -24,11 +24,11 @@ pub struct Plan {
     pub left_out: Vec<OmittedEffect>,
     /// The representation of each surface that the finger touches.
     pub representation: Vec<ModelChoice>,
-    /// Time that the renderer takes in addition to its stages, nanoseconds per sample.
+    /// Time that the renderer itself takes, without its stages, nanoseconds per sample.
     pub renderer_ns: f64,
     /// Total cost of the stages and the renderer, nanoseconds per sample.
     pub ns_per_sample_total: f64,
-    /// True if nothing changes while the scene plays, so that stages are not updated between
+    /// True if nothing changes while the scene plays. The renderer then updates no stage between
     /// blocks.
     pub constant: bool,
     /// Rate of the device, hertz.

@@ -1,4 +1,4 @@
-//! The renderer: runs the chain of a plan.
+//! The renderer of a scene: runs the chain of stages that a plan describes.
 
 use htex_play::Motion;
 
@@ -141,15 +141,15 @@ impl Renderer {
     }
 
     /// Sets the motion of the finger in a live scene. The speed is negative on the back stroke. If
-    /// the motion has no place, the finger can touch only surfaces without a region.
+    /// the motion has no position, the finger can touch only surfaces without a region.
     ///
-    /// A speed above 1000 mm/s, a force above 20 N or a number out of range counts as a failed
-    /// reading. The renderer then holds the last valid motion for at most 100 ms. After that, the
-    /// finger has no contact until the next valid motion.
+    /// A speed above 1000 mm/s, a force above 20 N, or another number that is out of range counts
+    /// as a failed reading. The renderer then holds the last valid motion for at most 100 ms. After
+    /// that, the finger has no contact until the next valid motion.
     ///
     /// # Errors
-    /// [`SceneError::Motion`] if a number is not finite or the force is negative. Such a motion
-    /// also counts as a failed reading.
+    /// Returns [`SceneError::Motion`] if a number is not finite or the force is negative. Such a
+    /// motion also counts as a failed reading.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), SceneError> {
         // An invalid reading is also stored, so that `Readings` sees the failure.
         self.live = motion;

@@ -1,8 +1,8 @@
 //! A recorded motion (trace), which can be interpolated at any time.
 //!
-//! The speed is the second difference of the integral of the position ([`velocity`]). The speed of
-//! a steady motion is exact, even if the rows are not evenly spaced. The steps of a 60 Hz tracker
-//! have little influence on the result.
+//! The speed is computed from an averaged velocity: the second difference of the integral of the
+//! position ([`velocity`]). The speed of a steady motion is exact, even if the rows are not evenly
+//! spaced. The steps of a 60 Hz tracker have little influence on the result.
 
 use std::path::Path;
 
@@ -60,7 +60,7 @@ impl Trace {
         Ok(Self::new(read_trace(path)?))
     }
 
-    /// Reads a trace like [`Self::open`], from a file in memory. Messages name `file`.
+    /// Reads a trace as [`Self::open`] does, but from a file in memory. Messages name `file`.
     ///
     /// # Errors
     /// Returns the same errors as [`read_trace`].
@@ -108,8 +108,8 @@ impl Trace {
     }
 
     /// Returns the motion at `t_s` seconds, interpolated linearly between rows. Before the first
-    /// row and after the last row, the finger rests at that row's place without contact: speed and
-    /// force are 0. Does not allocate.
+    /// row and after the last row, the finger rests at the position of that row without contact:
+    /// speed and force are 0. Does not allocate.
     pub fn point_at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);

@@ -1,4 +1,4 @@
-//! The NI-DAQmx functions in use, as `NIDAQmx.h` declares them.
+//! The NI-DAQmx functions that the adapter uses, as `NIDAQmx.h` declares them.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CString, c_char, c_void};

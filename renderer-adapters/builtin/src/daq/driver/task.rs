@@ -1,4 +1,4 @@
-//! A driver task on one analog output.
+//! A task of the NI-DAQmx driver on one analog output.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use std::ops::Deref;

@@ -99,10 +99,10 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
     })
 }
 
-/// Writes the spectrum that one would measure in the samples that a representation plays at a
-/// recorded condition. `magnitude` receives one magnitude for each frequency on the grid of the
-/// asset's band, and `len` must be the number of these frequencies. `condition` is an index that
-/// starts at 0.
+/// Writes the spectrum of the samples that a representation plays at a recorded condition, as a
+/// measurement would show it. `magnitude` receives one magnitude for each frequency on the grid of
+/// the asset's band, and `len` must be the number of these frequencies. `condition` is an index
+/// that starts at 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_read_magnitude(
     asset: htex_asset,

@@ -1,4 +1,5 @@
-//! The documents of calls: JSON objects. Functions take entries out of these objects by name.
+//! The JSON documents that callers pass to the functions of this module. Each function takes
+//! entries out of its document by name.
 //!
 //! Only the tables of settings are read with code that `serde` derives. Such code adds a kilobyte
 //! or more to the module for each struct, so all other documents are read without it.

@@ -7,10 +7,10 @@
 //! `scene.js`.
 //!
 //! JavaScript passes the name of a function, a JSON document and the bytes of files. The call
-//! returns a JSON document and bytes. With this single function, JavaScript need not know the
-//! layout of structs. The overhead is some microseconds per call, which is little compared with the
-//! work of a call. `sdk/bindings/web/src/author.d.ts` and `import.d.ts` define the names, documents
-//! and results.
+//! returns a JSON document and bytes. Because this function passes only JSON and bytes, JavaScript
+//! need not know the layout of C structs. The overhead is some microseconds per call, which is
+//! little compared with the work of a call. `sdk/bindings/web/src/author.d.ts` and `import.d.ts`
+//! define the names, documents and results.
 
 mod answer;
 mod call;

@@ -1,5 +1,5 @@
-//! Plays scenes whose files are in memory. A scene is opened once. After that, calls refer to the
-//! scene by a number until the scene is freed.
+//! Plays scenes whose files are in memory. A scene is opened once. After that, the program refers
+//! to the scene by a number until the scene is freed.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

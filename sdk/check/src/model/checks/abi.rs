@@ -1,4 +1,5 @@
-//! Checks of a library's marker, exports, descriptor and extensions.
+//! Checks the marker, exports, descriptor and extensions of a native model library or a WASM
+//! module.
 
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Scale, Store};
 

@@ -1,4 +1,4 @@
-//! Checks that invalid arguments are refused.
+//! Checks that a model refuses invalid arguments.
 
 use htex_host::{Band, FitCondition, FitInput, HostError, Kind, Status};
 use htex_model::{Values, flatten};

@@ -1,5 +1,5 @@
 //! Checks that the samples of a voice depend on its seed, but not on the block size or on other
-//! voices. Other checks here pass freed handles, which the model must refuse.
+//! voices. This module also checks that the model refuses freed handles.
 
 use htex_host::{Band, HostError, Status};
 

@@ -1,4 +1,4 @@
-//! Checks of rendering several voices in one call.
+//! Checks that a model can render several voices in one call.
 
 use htex_host::{ModelVoice, Status, VOICES_EXTENSION, render_together};
 

@@ -38,8 +38,8 @@ impl OwnFolder {
         Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// Uses the folder at this path, as [`Self::new`] does, but makes everything private that it
-    /// creates. Only this user may read new folders and files in the folder. If the folder itself
+    /// Uses the folder at this path, as [`Self::new`] does, but makes all new files and folders
+    /// private. Only this user may read new folders and files in the folder. If the folder itself
     /// does not exist yet, it is also created as a private folder.
     pub fn private(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::User }

@@ -41,15 +41,15 @@ pub struct Finding {
     pub code: String,
     /// Severity.
     pub severity: Severity,
-    /// JSON pointer into the document, e.g. the manifest of an asset. The pointer is empty if the
-    /// finding concerns the whole file.
+    /// JSON pointer to the place in the document (for an asset, in its manifest). The pointer is
+    /// empty if the finding concerns the whole file.
     #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
     /// The problem, its place, and what to do about it.
     pub message: String,
     /// The JSON Schema keyword that the document violates, written as the name of the schema's
     /// file, `#`, and a JSON pointer into the schema. Only validators that check documents against
-    /// JSON Schemas set this.
+    /// JSON Schemas set this field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,

@@ -29,7 +29,7 @@ pub struct FileReport {
     pub valid: bool,
     /// All findings, in the order in which the file is read.
     pub findings: Vec<Finding>,
-    /// Names and values of those reading limits that differ from their defaults.
+    /// Names and values of the reading limits that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub limits: BTreeMap<String, u64>,
 }
@@ -102,8 +102,8 @@ impl Findings {
         self.errors
     }
 
-    /// Returns the findings. If there were more than a hundred, a last finding states how many were
-    /// dropped.
+    /// Returns the findings. If there were more than a hundred findings, an additional last finding
+    /// states how many were dropped.
     pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);

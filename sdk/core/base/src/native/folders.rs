@@ -26,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the environment variables for folders whose values are relative paths, with these
-/// values. The other functions of this module ignore such variables.
+/// Returns the environment variables that name a folder of htex by a relative path, and these
+/// paths. The other functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);
@@ -48,10 +48,10 @@ pub fn data_or_new(folder: &str) -> Option<PathBuf> {
     Some(base("XDG_DATA_HOME", ".local/share")?.join(folder))
 }
 
-/// Returns the existing folders of this name that all users of this machine share: in the folders
-/// of `$XDG_DATA_DIRS`, or in `/usr/local/share` and `/usr/share` if the variable is not set. On
-/// Windows, the function looks in `%PROGRAMDATA%`; on macOS, it looks in `/Library/Application
-/// Support`.
+/// Returns the existing folders of this name that all users of this machine share. They lie in the
+/// folders of `$XDG_DATA_DIRS`, or in `/usr/local/share` and `/usr/share` if the variable is not
+/// set. On Windows, the function looks in `%PROGRAMDATA%`; on macOS, it looks in
+/// `/Library/Application Support`.
 pub fn system(folder: &str) -> Vec<PathBuf> {
     let of_variable: Vec<PathBuf> =
         listed("XDG_DATA_DIRS").into_iter().filter(|dir| dir.is_absolute()).collect();
@@ -74,8 +74,8 @@ pub fn listed(variable: &str) -> Vec<PathBuf> {
     folders.collect()
 }
 
-/// Returns the native libraries and the files with the extension `other` in a folder, sorted by
-/// name.
+/// Returns the native libraries in a folder and the files in it that have the extension `other`,
+/// sorted by name.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be read.

@@ -45,7 +45,8 @@ impl Library {
     /// relative to the current folder. The loader's search path is not used.
     ///
     /// # Safety
-    /// Runs the library's initialisers with all rights of this program.
+    /// The caller must trust the library, because this call runs the library's initialisers with
+    /// all rights of this program.
     ///
     /// # Errors
     /// Returns an error if the file does not exist, or is not a library for this machine.
@@ -60,7 +61,8 @@ impl Library {
     /// Loads the library that the system's loader finds by this name, such as `libnidaqmx.so.1`.
     ///
     /// # Safety
-    /// Runs the library's initialisers with all rights of this program.
+    /// The caller must trust the library, because this call runs the library's initialisers with
+    /// all rights of this program.
     ///
     /// # Errors
     /// Returns an error if the loader does not find a library, or cannot load it.
@@ -74,7 +76,8 @@ impl Library {
     /// system's loader finds by this name.
     ///
     /// # Safety
-    /// Runs the library's initialisers with all rights of this program.
+    /// The caller must trust the library, because this call runs the library's initialisers with
+    /// all rights of this program.
     ///
     /// # Errors
     /// Returns an error if there is no such library, or it cannot be loaded.
@@ -93,7 +96,8 @@ impl Library {
     /// Tries several names in order, and loads the first library that the system's loader finds.
     ///
     /// # Safety
-    /// Runs the library's initialisers with all rights of this program.
+    /// The caller must trust the libraries, because this call runs a library's initialisers with
+    /// all rights of this program.
     ///
     /// # Errors
     /// Returns an error if the loader finds none of the libraries. The message gives the reason for

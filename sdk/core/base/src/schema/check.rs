@@ -45,7 +45,7 @@ impl Retrieve for Nothing {
 }
 
 impl Schema {
-    /// Compiles a schema of draft 2020-12, or of another draft that its `$schema` names.
+    /// Compiles a schema, whose draft is 2020-12 or the draft that its `$schema` names.
     ///
     /// # Errors
     /// Returns an error if `schema` is not a valid schema, or refers to another schema.
@@ -53,8 +53,8 @@ impl Schema {
         jsonschema::options().with_retriever(Nothing).build(schema).map(Self)
     }
 
-    /// Returns the violations of a document, in the order of the schema: at most the first
-    /// thousand.
+    /// Returns how a document violates the schema: at most the first thousand violations, in the
+    /// order of the schema.
     pub fn violations(&self, document: &Value) -> Vec<Violation> {
         let errors = self.0.iter_errors(document);
         errors

@@ -5,8 +5,8 @@
 //!   only with the last request. A local file is first written under a temporary name next to its
 //!   target, and then renamed.
 //! - The module retries after temporary failures (503, 429, a stalled or cut connection) with
-//!   growing pauses, within a total time ([`Settings`]). A response that was cut off is resumed at
-//!   the same version of the file.
+//!   growing pauses, within a total time ([`Settings`]). If a response is cut off, the module
+//!   requests the rest of it, from the same version of the file.
 //! - Credentials come only from environment variables, and no message contains a credential
 //!   ([`StorageError`]).
 //! - [`Remote`] reads byte ranges that all come from the same version of a file, and counts its
@@ -123,7 +123,7 @@ impl Storage {
     /// Reads a whole file of at most `most_bytes`.
     ///
     /// # Errors
-    /// Returns an error if the file is missing, larger, or cannot be read.
+    /// Returns an error if the file is missing, is larger than `most_bytes`, or cannot be read.
     pub fn read(&self, location: &Location, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::read(path, most_bytes),

@@ -1,4 +1,5 @@
-//! Replaces the stores if the feature `cloud` is off. Every remote URI is then an error.
+//! Replaces the stores if the feature `cloud` is off. Every use of a remote URI then returns an
+//! error.
 
 use std::convert::Infallible;
 use std::fs::File;

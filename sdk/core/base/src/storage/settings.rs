@@ -24,8 +24,8 @@ pub struct Settings {
     pub stall: Duration,
     /// Largest number of retries of a request: 20.
     pub retries: usize,
-    /// Pause before the first retry: 0.2 s. Each later pause is random, up to six times as long as
-    /// the pause before.
+    /// Pause before the first retry: 0.2 s. Each later pause is random, and up to six times as long
+    /// as the previous pause.
     pub first_pause: Duration,
     /// Longest pause: 2 s.
     pub longest_pause: Duration,

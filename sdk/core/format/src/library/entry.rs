@@ -33,7 +33,7 @@ pub struct Entry {
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
     /// Licence of the texture; `None` if the texture states no licence. The index stores only the
-    /// first 255 bytes. This value and the next four are `None` in a library of version 1.0,
+    /// first 255 bytes. This field and the next four fields are `None` in a library of version 1.0,
     /// because its index does not store them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
@@ -49,8 +49,8 @@ pub struct Entry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub felt_error_rms_db: Option<f64>,
     /// Held-out error, RMS over third-octave bands, at the worst recorded condition, decibels;
-    /// `None` if the texture does not state it. This is the difference between the texture, fitted
-    /// to one half of its recordings, and the other half.
+    /// `None` if the texture does not state it. For this error, the texture is fitted to one half
+    /// of its recordings and compared with the other half.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out_error_db: Option<f64>,
     /// Size of the texture's `.htex` file, bytes.
@@ -96,7 +96,8 @@ pub(crate) struct TexturePlace {
 /// A shared object inside a texture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Number of bytes before the object, counting only the bytes that the texture does not share.
+    /// Position of the object in the texture: the number of bytes before the object that the
+    /// texture does not share with other textures.
     pub at: u64,
     /// Range of the object, counted from the start of the shared part.
     pub object: Range<u64>,

@@ -65,7 +65,7 @@ pub enum LibraryError {
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
     Duplicate { name: String },
-    /// Two names differ only in case or normalisation.
+    /// Two names differ only in upper and lower case, or in Unicode normalisation.
     #[error("{} and {} differ only in case or in Unicode normalisation, and are one file on some systems; rename one", plain(.name), plain(.other))]
     Alike {
         name: String,

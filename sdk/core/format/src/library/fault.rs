@@ -1,4 +1,4 @@
-//! A violation of a rule of the format, which the caller converts to an error or a finding.
+//! A violation of a rule of the format; the caller converts it to an error or a finding.
 
 use htex_base::finding::{Findings, Rule};
 

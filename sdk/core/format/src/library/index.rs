@@ -25,7 +25,7 @@ use crate::library::spectra::read_spectra;
 ///
 /// 1. [`Self::leaf_of`] finds the leaf page for the texture's name, and [`Self::leaf_range`]
 ///    returns the byte range of that page in the file.
-/// 2. [`Self::read_leaf`] decodes the page. One of the entries in this page is the texture's entry.
+/// 2. [`Self::read_leaf`] decodes the page. This page contains the texture's entry.
 /// 3. [`Self::asset_ranges`] returns the ranges of the texture's bytes, and [`Self::assemble`]
 ///    assembles the texture from these bytes.
 ///
@@ -63,8 +63,8 @@ impl Index {
         self.header.entries
     }
 
-    /// Returns the BLAKE3 hash of the index. It identifies the library: two libraries with the same
-    /// hash contain the same textures with the same names.
+    /// Returns the BLAKE3 hash of the index. This hash identifies the library: two libraries with
+    /// the same hash contain the same textures with the same names.
     pub fn blake3(&self) -> [u8; 32] {
         self.header.index_blake3
     }

@@ -23,7 +23,7 @@ impl Library<LibraryFile> {
     ///
     /// Opening one texture of a remote file takes three requests: the start of the file, a page of
     /// the index, and the texture. For a small library, the start of the file already contains the
-    /// whole index, and two requests are enough.
+    /// whole index, so two requests are enough.
     ///
     /// # Errors
     /// Returns the errors of [`Library::open`], or [`LibraryError::Storage`] if a remote file

@@ -50,12 +50,13 @@ fn part<'a>(run: &Run, bytes: &'a [u8], range: &Range<u64>) -> &'a [u8] {
 }
 
 impl<S: LibrarySource + Sync> Library<S> {
-    /// Reads the entries with these names, in the order of the names. One read covers several
-    /// neighbouring pages, and `at_once` reads run at the same time. This saves time if the library
-    /// is on a network.
+    /// Reads the entries of these textures, in the order in which `names` lists them. One read
+    /// covers several neighbouring pages, and `at_once` reads run at the same time. This saves time
+    /// if the library is on a network.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::get`]. A name that the library does not have is also an error.
+    /// Returns the errors of [`Self::get`]. Also returns an error if the library does not have one
+    /// of the names.
     pub fn entries_of<N: AsRef<str>>(
         &self,
         names: &[N],

@@ -44,7 +44,7 @@ pub enum InvalidName {
     /// A part of the name ends in a space or a dot, which Windows would remove.
     #[error("a part of it ends in a space or a dot; remove it")]
     End,
-    /// A part of the name is the name of a device of Windows, such as `CON`.
+    /// A part of the name is reserved for a Windows device, such as `CON`.
     #[error("a part of it is a device of Windows, such as CON or COM1; rename it")]
     Device,
 }
@@ -114,7 +114,7 @@ pub struct Names {
 
 impl Names {
     /// Adds a name. Returns false if the name differs from an earlier name only in case or in
-    /// Unicode normalisation, because some operating systems treat two such names as the same file.
+    /// Unicode normalisation. Some operating systems treat two such names as the same file.
     pub fn insert(&mut self, name: &str) -> bool {
         self.seen.insert(file_key(name))
     }

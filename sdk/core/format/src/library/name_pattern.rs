@@ -31,8 +31,8 @@ impl NamePattern {
         self.matches_with(name, true)
     }
 
-    /// Returns whether a text matches. In this text, `/` is an ordinary character, which `*` and
-    /// `?` also match.
+    /// Returns whether a text matches. Unlike in a name, `/` is an ordinary character in this text:
+    /// `*` and `?` also match it.
     pub fn matches_text(&self, text: &str) -> bool {
         self.matches_with(text, false)
     }

@@ -4,8 +4,8 @@
 //! packer first writes each added texture to a temporary store, the spool, and writes the library
 //! at the end. Textures of another library need no spool, because they can be read from that
 //! library. The packer orders textures by name, and shared objects by hash. So the same textures
-//! always give the same file. It does not matter in which order and from which libraries they were
-//! added.
+//! always give the same file. The order in which the textures were added, and the libraries from
+//! which they came, do not matter.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, Write};

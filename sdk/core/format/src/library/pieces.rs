@@ -41,8 +41,8 @@ pub(crate) struct Object {
     pub piece: Piece,
     /// Number of times that the object occurs in all textures together.
     pub uses: u64,
-    /// `true` for a part of a texture, which only equal textures can share. This is false for
-    /// modules.
+    /// `true` if the object is a part of a texture; only equal textures can share such a part. This
+    /// is false for modules.
     pub is_part: bool,
 }
 

@@ -32,7 +32,7 @@ impl PreparedTexture {
     /// `describe` is `None`, the description is empty.
     ///
     /// # Errors
-    /// If the bytes are not a valid asset.
+    /// Returns an error if the bytes are not a valid asset.
     pub fn new(bytes: Vec<u8>, describe: Option<Describe>) -> Result<Self, ReadError> {
         let asset = Asset::from_bytes(&bytes)?;
         let description = describe.map_or(Description::default(), |describe| describe(&asset));

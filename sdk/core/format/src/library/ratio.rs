@@ -24,7 +24,8 @@ impl Ratio {
     /// Adds the size of a texture that the program is going to read.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if the total size of all textures added so far exceeds the limit.
+    /// Returns [`LibraryError::Invalid`] if the total size of all textures added so far exceeds the
+    /// limit.
     pub fn add(&mut self, entry: &Entry) -> Result<(), LibraryError> {
         Ok(self.count(entry, "")?)
     }

@@ -62,7 +62,7 @@ impl Library<LocalFile> {
     /// Opens a local file, within the default [`Limits`].
     ///
     /// # Errors
-    /// If the file cannot be read, or its header or root page breaks a rule.
+    /// Returns an error if the file cannot be read, or if its header or root page breaks a rule.
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         Self::open_source(LocalFile::open(path)?)
     }
@@ -152,8 +152,8 @@ impl<S: LibrarySource> Library<S> {
     /// their hash.
     ///
     /// # Errors
-    /// [`LibraryError::Absent`] if there is no such texture, or another error if bytes cannot be
-    /// read or break a rule.
+    /// Returns [`LibraryError::Absent`] if there is no such texture, or another error if bytes
+    /// cannot be read or break a rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
         self.read(&self.needed(name)?)
     }
@@ -189,7 +189,7 @@ impl<S: LibrarySource> Library<S> {
     /// Reads the entry of a texture. Returns `None` if there is no such texture.
     ///
     /// # Errors
-    /// If the page cannot be read or breaks a rule.
+    /// Returns an error if the page of the index cannot be read or breaks a rule.
     pub fn entry(&self, name: &str) -> Result<Option<Entry>, LibraryError> {
         let Some(leaf) = self.index.leaf_of(name) else {
             return Ok(None);
@@ -203,7 +203,7 @@ impl<S: LibrarySource> Library<S> {
     /// from 0. Returns `None` if there is no such page.
     ///
     /// # Errors
-    /// If the page cannot be read or breaks a rule.
+    /// Returns an error if the page cannot be read or breaks a rule.
     pub fn leaf_entries(&self, leaf: usize) -> Result<Option<Arc<Vec<Entry>>>, LibraryError> {
         if leaf >= self.index.leaves() {
             return Ok(None);
@@ -221,13 +221,13 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
-    /// Reads a texture's description: values for searches, in addition to the facts in the
+    /// Reads a texture's description: values for searches, which supplement the facts in the
     /// texture's manifest. The entry must come from this library. The spectra of all entries on a
     /// leaf page are on one page of spectra. The function reads this page if it is not in the
     /// cache.
     ///
     /// # Errors
-    /// If the page cannot be read or breaks a rule.
+    /// Returns an error if the page of spectra cannot be read or breaks a rule.
     pub fn description(&self, entry: &Entry) -> Result<Description, LibraryError> {
         let spectra = self.spectra(entry.place.leaf)?;
         Ok(Description {

@@ -49,7 +49,7 @@ impl<S: LibrarySource> Library<S> {
     /// ```
     ///
     /// # Errors
-    /// If the index or the spectra cannot be read or break a rule.
+    /// Returns an error if the index or the spectra cannot be read or break a rule.
     pub fn similar(
         &self,
         spectrum: &CoarseSpectrum,
@@ -81,7 +81,7 @@ impl<S: LibrarySource> Library<S> {
     /// nearly equal spectra. Only textures that match the query are compared.
     ///
     /// # Errors
-    /// If the index or the spectra cannot be read or break a rule.
+    /// Returns an error if the index or the spectra cannot be read or break a rule.
     pub fn duplicates(
         &self,
         query: &Query,

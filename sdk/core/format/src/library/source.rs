@@ -42,7 +42,7 @@ impl LocalFile {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`LibraryError::Open`] if the file cannot be opened.
+    /// Returns [`LibraryError::Open`] if the file cannot be opened.
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         let file = File::open(path)
             .map_err(|error| LibraryError::Open { path: path.to_owned(), error })?;

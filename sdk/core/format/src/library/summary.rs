@@ -55,7 +55,7 @@ impl<S: LibrarySource> Library<S> {
     /// ```
     ///
     /// # Errors
-    /// If a page of the index cannot be read or breaks a rule.
+    /// Returns an error if a page of the index cannot be read or breaks a rule.
     pub fn summary(&self) -> Result<LibrarySummary, LibraryError> {
         let index = self.index();
         let mut summary = LibrarySummary {

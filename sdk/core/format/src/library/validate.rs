@@ -24,8 +24,8 @@ use crate::library::source::{LibrarySource, LocalFile};
 /// with [`crate::validate`].
 ///
 /// # Errors
-/// If the file cannot be read. Problems in the file's contents are findings in the report, not
-/// errors.
+/// Returns an error if the file cannot be read. Problems in the file's contents are findings in the
+/// report, not errors.
 pub fn validate(path: &Path) -> Result<Report, LibraryError> {
     validate_source(LocalFile::open(path)?, &Limits::default())
 }

@@ -43,8 +43,8 @@ impl Writer {
     /// show to users; it may be empty.
     ///
     /// # Errors
-    /// If the name has a control character or more than 255 bytes, or if no file can be written to
-    /// the folder of `path`.
+    /// Returns an error if the name has a control character or more than 255 bytes, or if no file
+    /// can be written to the folder of `path`.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = FileInProgress::create(path).map_err(LibraryError::unchanged(path))?;
@@ -127,8 +127,9 @@ impl Writer {
     /// Writes the library and renames it to the target.
     ///
     /// # Errors
-    /// If a texture states no licence, a file cannot be written, the metadata break a rule
-    /// ([`LibraryMetadata::check`]), or the library exceeds the default limits of readers.
+    /// Returns an error if a texture states no licence, a file cannot be written, the metadata
+    /// break a rule ([`LibraryMetadata::check`]), or the library exceeds the default limits of
+    /// readers.
     pub fn finish(self) -> Result<PackSummary, LibraryError> {
         let Self { mut target, path, packer } = self;
         let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());

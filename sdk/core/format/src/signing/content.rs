@@ -67,7 +67,7 @@ impl SignedContent {
     /// Returns the content to sign for an asset's file.
     ///
     /// # Errors
-    /// If the bytes are not an asset.
+    /// Returns an error if the bytes are not an asset.
     pub fn asset(file: &[u8]) -> Result<Self, ReadError> {
         let asset = crate::Asset::from_bytes(file)?;
         Ok(Self::plugin(SignedKind::Asset, &asset.manifest.name, "", file))
@@ -135,7 +135,7 @@ impl FileSignature {
     /// Parses a file with a signature.
     ///
     /// # Errors
-    /// If the bytes are not a signature file of version 1.
+    /// Returns an error if the bytes are not a signature file of version 1.
     pub fn from_json(bytes: &[u8]) -> Result<Self, SignatureError> {
         if bytes.len() > MOST_BYTES {
             return Err(SignatureError::Malformed(format!("more than {MOST_BYTES} bytes")));
@@ -157,7 +157,7 @@ impl FileSignature {
     /// Returns the key that signed this content.
     ///
     /// # Errors
-    /// If the signature belongs to other content, or is invalid.
+    /// Returns an error if the signature is invalid or belongs to other content.
     pub fn check(&self, content: &SignedContent) -> Result<PublicKey, SignatureError> {
         let told = &self.content;
         if told.blake3 != content.blake3 {

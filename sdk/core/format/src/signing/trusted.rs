@@ -52,8 +52,8 @@ impl TrustedKeys {
     /// Adds a key.
     ///
     /// # Errors
-    /// If the name is invalid or belongs to another key, or if the key is revoked or has another
-    /// name.
+    /// Returns an error if the name is invalid or belongs to another key, or if the key is revoked
+    /// or has another name.
     pub fn trust(&mut self, name: &str, key: PublicKey) -> Result<(), String> {
         check_key_name(name)?;
         if let Some(known) = self.of(&key) {
@@ -78,7 +78,7 @@ impl TrustedKeys {
     /// Marks the key with this name as revoked.
     ///
     /// # Errors
-    /// If no key has the name.
+    /// Returns an error if no key has the name.
     pub fn revoke(&mut self, name: &str) -> Result<(), String> {
         let key = self.keys.iter_mut().find(|key| key.name == name);
         key.ok_or_else(|| format!("no key has the name `{name}`"))?.revoked = true;

@@ -1,5 +1,5 @@
-//! The functions that JavaScript provides (`sdk/bindings/web/src/guests.js`) to run the modules of
-//! models as *guests*.
+//! The functions that JavaScript provides (`sdk/bindings/web/src/guests.js`) so that the host can
+//! run the WASM modules of models, called *guests*.
 #![allow(unsafe_code)]
 
 mod raw {

@@ -1,11 +1,11 @@
 //! Runs models in WASM modules with the engine of the browser, or of Node.js, that runs this
 //! program.
 //!
-//! The rules are the same as for the engine of the feature `wasm`. A module imports nothing, and
-//! its memory and tables are limited. Each voice has a separate instance, and the host does not
-//! call an instance again after a trap. But the engine of a browser cannot interrupt a call. A call
-//! that takes longer than its limit runs to its end, and then returns an error. An endless loop in
-//! a module ends only when the page stops the worker that runs the module
+//! Modules follow the same rules as with the engine of the feature `wasm`. A module imports
+//! nothing, and its memory and tables are limited. Each voice has a separate instance, and the host
+//! does not call an instance again after a trap. But the engine of a browser cannot interrupt a
+//! call. A call that takes longer than its limit runs to its end, and then returns an error. An
+//! endless loop in a module ends only when the page stops the worker that runs the module
 //! (`sdk/bindings/web/src/guarded.js`).
 //!
 //! This Rust module contains only the browser's engine. The code that loads models is shared with

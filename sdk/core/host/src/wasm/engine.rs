@@ -2,7 +2,7 @@
 //!
 //! Time limits use wasmtime's epochs: a thread increments a counter (20 times per second with the
 //! default limits), and wasmtime stops a call when the counter reaches the call's deadline. So the
-//! time limit also stops endless loops. The engine can also count instructions (`fuel`). A limit of
+//! time limit also stops endless loops. The engine can also count instructions (`fuel`). A limit on
 //! instructions stops the same calls on every machine. With [`WasmEngine::Signals`], a memory limit
 //! costs no time while a module runs: the engine reserves addresses, so it need not compare each
 //! access with a bound.
@@ -35,9 +35,9 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits until the clock thread of each engine that has no modules has ended, at most 50 ms for
-/// each thread. If this code is in a plugin, the program must call this function before it unloads
-/// the plugin.
+/// Waits until the clock threads of engines without modules have ended, at most 50 ms for each
+/// thread. If this code is in a plugin, the program must call this function before it unloads the
+/// plugin.
 pub fn end_wasm_clocks() {
     // Taken out, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));

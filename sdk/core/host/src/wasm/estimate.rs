@@ -1,10 +1,11 @@
-//! Estimates the time for compiling a module before compilation. The estimate is an upper bound.
+//! Estimates how long the compilation of a module will take, before it begins. The estimate is an
+//! upper bound.
 //!
 //! The compiler's time and memory can grow faster than the size of the module. There are three
-//! reasons: many operators in one function; values that are live across branches, or that merge
-//! where blocks end; and nested blocks. The estimate is a sum with one term for each of these
-//! reasons. In a comparison with measured times, the sum was above the measured time of every
-//! module, and at most three times as large.
+//! reasons: a function has many operators, values are live across branches or merge where blocks
+//! end, or blocks are nested. The estimate is a sum with one term for each of these reasons. In a
+//! comparison with measured times, the sum was above the measured time of every module, and at most
+//! three times the measured time.
 //!
 //! If the estimate of a module exceeds the limit, the host compiles the module without optimisation
 //! and with a single-pass register allocator ([`super::engine::Effort::Quick`]), which takes nearly

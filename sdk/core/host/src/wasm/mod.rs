@@ -3,7 +3,8 @@
 //! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack,
 //! time and compilation are limited ([`WasmLimits`](crate::WasmLimits)). Each voice has a separate
 //! instance with separate memory, so a trap does not affect other voices, and rendering takes no
-//! lock. All other calls share one instance, which is recreated after a trap.
+//! lock. All calls that do not belong to a voice share one instance, which is recreated after a
+//! trap.
 
 mod allowance;
 mod cache;

@@ -1,4 +1,4 @@
-//! A model in a module: all calls except the calls of voices.
+//! A model in a WASM module: all calls to the model, except the calls to its voices.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -79,8 +79,8 @@ pub(super) fn compile(
 /// ```
 ///
 /// # Errors
-/// When the arguments do not come from a host of this version, the limits cannot be set, or a pipe
-/// breaks.
+/// Returns an error if the arguments do not come from a host of this version, if the limits cannot
+/// be set, or if a pipe breaks.
 pub fn serve_compiler(arguments: &[String]) -> Result<(), CompilerError> {
     let request = Request::read(arguments).ok_or(CompilerError::Arguments)?;
     request.limit_this_process()?;

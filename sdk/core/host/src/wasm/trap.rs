@@ -1,4 +1,4 @@
-//! Converts errors of the engine to faults.
+//! Converts errors of the WASM engine to `Fault` values.
 
 use wasmtime::Trap;
 

@@ -1,3 +1,3 @@
-//! Types for the typed functions of a module, under the names that both engines use.
+//! Gives the types of a module's typed functions the names that both engines use.
 
 pub(super) use wasmtime::{TypedFunc, WasmParams as Parameters, WasmResults as Returned};

@@ -1,4 +1,4 @@
-//! The memory that one instance uses.
+//! The memory that one instance of a WASM module uses.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A voice in a separate instance. The instance is not called again after a trap.
+//! A voice in a separate instance. After a trap, the host does not call this instance again.
 //!
 //! Each voice has a buffer in the module's memory, which is allocated once. The host copies
 //! arguments into this buffer and, in each call, copies the rendered samples out of it.

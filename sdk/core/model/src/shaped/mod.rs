@@ -95,14 +95,14 @@ pub trait ShapedModel: 'static {
     /// Finds the parameters that describe a spectrum; see [`Model::fit`].
     ///
     /// # Errors
-    /// Finds the parameters that describe a spectrum; see [`Model::fit`].
+    /// Returns an error if the model cannot describe the spectrum; see [`Model::fit`].
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
     /// Writes the magnitude of the shape; see [`Model::magnitude`]. The default writes the curve,
     /// scaled to unit RMS.
     ///
     /// # Errors
-    /// If the parameters describe no spectrum in this band.
+    /// Returns an error if the parameters describe no spectrum in this band.
     fn magnitude(
         parameters: &Values<'_>,
         band: Band,
@@ -117,7 +117,8 @@ pub trait ShapedModel: 'static {
     /// number linearly.
     ///
     /// # Errors
-    /// If the sets cannot be interpolated, e.g. because their lists differ in length.
+    /// Returns an error if the sets cannot be interpolated, e.g. because their lists differ in
+    /// length.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -208,8 +209,8 @@ pub trait Curve: Sized + Send + 'static {
     /// thread.
     ///
     /// # Errors
-    /// If the parameters describe no spectrum, i.e. the curve is zero or not finite everywhere in
-    /// the band. The curve of a [`ShapedModel`] need not check this.
+    /// Returns an error if the parameters describe no spectrum, i.e. the curve is zero or not
+    /// finite everywhere in the band. The curve of a [`ShapedModel`] need not check this.
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error>;
 
     /// Returns the band for which the curve was made.
@@ -218,8 +219,8 @@ pub trait Curve: Sized + Send + 'static {
     /// Changes the parameters. By default it makes a new curve. `[render thread, no allocation]`
     ///
     /// # Errors
-    /// If the parameters describe no spectrum, as for [`Self::new`]. After an error the curve may
-    /// be unusable.
+    /// Returns an error if the parameters describe no spectrum, as for [`Self::new`]. After an
+    /// error the curve may be unusable.
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         *self = Self::new(parameters, self.band())?;
         Ok(())
@@ -255,7 +256,7 @@ pub trait Curve: Sized + Send + 'static {
 /// Frequencies outside the band get zero.
 ///
 /// # Errors
-/// If the parameters describe no spectrum.
+/// Returns an error if the parameters describe no spectrum.
 pub fn magnitude<C: Curve>(
     parameters: &Values<'_>,
     band: Band,
@@ -286,7 +287,7 @@ impl<C: Curve> ShapedVoice<C> {
     /// Makes a voice whose samples have unit RMS.
     ///
     /// # Errors
-    /// If the parameters describe no spectrum.
+    /// Returns an error if the parameters describe no spectrum.
     pub fn new(
         parameters: &Values<'_>,
         band: Band,

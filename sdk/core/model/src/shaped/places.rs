@@ -7,8 +7,8 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
 
-/// A table that contains the position of each of a voice's frequencies between two bins of a band's
-/// grid. Voices with the same rate and band share one table.
+/// A table that states where each of a voice's frequencies lies between two bins of a band's grid.
+/// Voices with the same rate and band share one table.
 pub struct Places(Vec<BinPosition>);
 
 /// Position between two neighbouring bins: the lower bin, and the fraction of the way to the next

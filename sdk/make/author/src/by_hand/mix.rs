@@ -32,13 +32,13 @@ impl MixedAsset<'_> {
 /// textures, the parameters of the other texture are interpolated for this condition, as in a
 /// player. The law comes from the texture with the larger weight, or from `a` if the weights are
 /// equal. A texture may store triangles of conditions. A player interpolates within these
-/// triangles. If the texture that gives the law has exactly the conditions of the result, the
-/// result gets the triangles of this texture. Otherwise the result has no stored triangles. In this
+/// triangles. The result gets the triangles of the texture that gives the law, if this texture has
+/// exactly the conditions of the result. Otherwise the result has no stored triangles. In this
 /// case, htex adds a warning if one of the two textures had triangles.
 ///
 /// # Errors
-/// When the weight is out of range, when the textures have no model in common, when their
-/// quantities or bands differ, or when a model cannot mix its parameters.
+/// Returns an error if the weight is out of range, if the textures have no model in common, if
+/// their quantities or bands differ, or if a model cannot mix its parameters.
 pub fn mix(
     a: MixedAsset<'_>,
     b: MixedAsset<'_>,

@@ -83,8 +83,8 @@ impl ByHand {
 /// ```
 ///
 /// # Errors
-/// When a parameter is unknown, missing or out of range, when the level is out of the quantity's
-/// range, or when the model refuses the parameters.
+/// Returns an error if a parameter is unknown, missing or out of range, if the level is out of the
+/// quantity's range, or if the model refuses the parameters.
 pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, AuthorError> {
     let at = ByHandAt {
         condition: texture.condition,

@@ -7,9 +7,9 @@
 //! side lobes are 92 dB down (four-term Blackman-Harris; Harris 1978). The check computes the power
 //! in the band with each of the two windows, and compares the two powers. In 240 third-party
 //! recordings of fingers, tools and microphones, the short segments show at most 4.3 dB more power
-//! than the long windows. If the normal forces and positions from recordings of fingers are read by
-//! mistake as a texture, the short segments show at least 32 dB more. For noise of 1 to 15 Hz, the
-//! short segments show at least 11 dB more.
+//! than the long segments. If the normal forces and positions from recordings of fingers are read
+//! by mistake as a texture, the short segments show at least 32 dB more. For noise of 1 to 15 Hz,
+//! the short segments show at least 11 dB more.
 
 use std::f64::consts::TAU;
 

@@ -4,10 +4,10 @@
 //! has sharp corners (stick and slip), so a large number of corners does not prove that there are
 //! outliers. To repair a sample means to replace it by a value interpolated from its neighbours. A
 //! texture's corner lasts several samples, so the corner remains when one sample is repaired. The
-//! corner of a single-sample outlier disappears when the outlier is repaired. In 240 third-party
-//! recordings, such a repair removes at most four corners of 12 times the usual size per recording.
-//! Corners of five times the usual size disappear at no more than 0.1 % of the samples, except for
-//! 0.62 % in a recording of a motor's current.
+//! corner of a single-sample outlier disappears when the outlier is repaired. In each of 240
+//! third-party recordings, such repairs remove at most four of the corners that have 12 times the
+//! usual size. Corners of five times the usual size disappear at no more than 0.1 % of a
+//! recording's samples. The exception is a recording of a motor's current, with 0.62 %.
 
 use std::ops::Range;
 

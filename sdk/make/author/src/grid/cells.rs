@@ -1,5 +1,5 @@
-//! The cells of a grid. A cell contains the steady windows around one crossing of the grid's speed
-//! and force lines.
+//! The cells of a grid. A cell contains the windows with steady motion around one crossing of the
+//! grid's speed and force lines.
 
 use htex_dsp::order;
 

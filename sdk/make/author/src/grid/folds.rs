@@ -3,9 +3,9 @@
 //!
 //! Neighbouring cells share windows, and windows overlap. If a condition were predicted from
 //! neighbouring cells, the prediction would use some of the samples with which it is then compared.
-//! Blocks of time share no samples. The blocks are long because a finger and its motion drift.
-//! Samples recorded within a second of a short block would predict this block too well. The error
-//! would then be smaller than the error of a later playback.
+//! The quarters are blocks of time, which share no samples. The blocks are long because a finger
+//! and its motion drift. Samples recorded within a second of a short block would predict this block
+//! too well. The error would then be smaller than the error of a later playback.
 
 use std::ops::Range;
 

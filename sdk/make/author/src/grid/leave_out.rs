@@ -1,6 +1,6 @@
 //! Held-out error of a model. For each block of time, the model is fitted to the other blocks of
-//! the recording. The spectrum that a player would play from this fit is compared with the left-out
-//! block.
+//! the recording. The spectrum that a player would play from this fit is compared with the spectrum
+//! of the left-out block.
 
 use htex_dsp::bands::rms;
 use htex_format::{LeftOut, Measure, Measures};

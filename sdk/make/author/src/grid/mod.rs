@@ -4,10 +4,10 @@
 //! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`). Each
 //! cell with enough windows becomes a condition. In a window, the speed and force differ slightly
 //! from the speed and force of the crossing. Two steps correct this difference. Each window's
-//! length is chosen so that all windows cover the same path (`paths`). Each window's energies are
-//! corrected by the texture's measured dependence on speed and force (`slopes`). The number of
-//! speed lines is chosen so that the grid best predicts left-out blocks of time (`folds`,
-//! `held_out`, `search`).
+//! length is changed so that the finger covers the same distance as in 0.2 s at the speed of the
+//! grid line (`paths`). Each window's energies are corrected for the texture's measured dependence
+//! on speed and force (`slopes`). The number of speed lines is chosen so that the grid best
+//! predicts left-out blocks of time (`folds`, `held_out`, `search`).
 //!
 //! A player interpolates in the Delaunay mesh of the conditions. This method is from the Penn
 //! Haptic Texture Toolkit (Culbertson, Unwin and Kuchenbecker 2014). The toolkit fits segments of

@@ -2,12 +2,12 @@
 //!
 //! Most of a texture's spectrum comes from the relief of the surface. The frequencies that the
 //! relief produces are proportional to the finger's speed. In a window, the finger may be faster or
-//! slower than the speed of the grid line. In this case, the length of the window is changed. In
-//! the changed window, the finger covers the same path as it covers in 0.2 s at the line's speed.
-//! The frequency bins of the changed window correspond to the frequencies that the relief produces
-//! at the line's speed (order tracking, as for rotating machines). With changed lengths, the
-//! spectral lines of a weave remain sharp although the speed varies within a cell. In exchange,
-//! components that do not follow the speed are blurred by the same amount.
+//! slower than the speed of the window's grid line. In this case, the module changes the length of
+//! the window. In the changed window, the finger covers the same path as it covers in 0.2 s at the
+//! line's speed. The frequency bins of the changed window correspond to the frequencies that the
+//! relief produces at the line's speed (order tracking, as for rotating machines). With changed
+//! lengths, the spectral lines of a weave remain sharp although the speed varies within a cell. In
+//! exchange, components that do not follow the speed are blurred by the same amount.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,12 +1,12 @@
-//! Corrects the spectra of windows for the difference between their motion and the speed and force
-//! of their cell's crossing.
+//! Corrects the spectra of windows for the difference between each window's motion and the crossing
+//! of its cell (the speed and force for which the cell stands).
 //!
-//! In all windows of a cell, the finger covers an equal path ([`super::paths`]). In each
-//! third-octave band, a linear fit over the windows around the crossing relates the logarithm of
-//! the energy to the logarithms of speed and force. The fit predicts by how much the energy changes
-//! if speed and force change from the window's values to the crossing's values. The window's
-//! spectrum is scaled by this change. Without this correction, windows with a firm touch would
-//! dominate the mean of the cell.
+//! In all windows of a cell, the finger covers a path of the same length ([`super::paths`]). In
+//! each third-octave band, a linear fit over the windows around the crossing relates the logarithm
+//! of the energy to the logarithms of speed and force. The fit predicts by how much the energy
+//! changes if speed and force change from the window's values to the crossing's values. The
+//! window's spectrum is scaled by this change. Without this correction, windows with a firm touch
+//! would dominate the mean of the cell.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;

@@ -1,9 +1,9 @@
 //! Colours: a palette for models and series, and the scales of the heat tables.
 //!
 //! The hues are based on Okabe and Ito's set. Darker hues replace the light hues, so that every
-//! line has a contrast of at least 3 : 1 on white. Any two models can be told apart in normal,
-//! protan, deutan and tritan vision. A simulation after Machado et al. 2009 showed this: the CIE76
-//! difference is about 17 or more.
+//! line has a contrast of at least 3 : 1 on white. A viewer with normal, protan, deutan or tritan
+//! vision can distinguish the colours of any two models. A simulation after Machado et al. 2009
+//! showed this: the CIE76 difference between any two of these colours is about 17 or more.
 
 /// Colour of the recording: dark grey, distinct from the models' colours.
 pub(crate) const RECORDING_COLOR: &str = "#4d4d4d";

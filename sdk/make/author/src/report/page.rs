@@ -91,7 +91,7 @@ pub fn figures(pictures: &[String]) -> String {
     figures.children(pictures.iter().map(one)).render()
 }
 
-/// Returns an element that shows `summary`. A click on the summary expands `html`.
+/// Returns an element that shows `summary`. A click on the summary shows `html` below it.
 pub fn details(summary: &str, html: &str) -> String {
     let details = Element::new("details").child(&Element::new("summary").text(summary));
     details.raw(html).render()

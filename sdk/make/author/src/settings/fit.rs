@@ -81,8 +81,8 @@ settings! {
         ))]
         pub keep_reference: Option<bool>,
 
-        /// Whether the asset is coded: fewer bytes, but readers of version 1.0 of the format refuse
-        /// it.
+        /// Whether to store the asset in coded form, which takes fewer bytes but is refused by
+        /// readers of version 1.0 of the format.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             display_order = 6,
@@ -171,7 +171,7 @@ impl FitSettings {
     /// Adds options of the form `MODEL.NAME=VALUE`. `MODEL` may also be a model's dotted id.
     ///
     /// # Errors
-    /// When a text has another form.
+    /// Returns an error if a text has another form.
     pub fn add_options(&mut self, texts: &[String]) -> Result<(), AuthorError> {
         for text in texts {
             let (name, value) = text
@@ -187,7 +187,8 @@ impl FitSettings {
     /// Returns the models to fit, each with its options.
     ///
     /// # Errors
-    /// When a model or an option is unknown, or an option names a model that is not being fitted.
+    /// Returns an error if a model or an option is unknown, or an option names a model that is not
+    /// being fitted.
     pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, AuthorError> {
         let models = self.named_models(registry)?;
         let mut options: Vec<(&str, &str, String)> = self.preset_options(&models).collect();

@@ -1,4 +1,5 @@
-//! Exponents of a texture's law, given by the user.
+//! Exponents that the user gives for a texture's motion law (how frequencies and level change
+//! outside the recorded range).
 
 use std::str::FromStr;
 
@@ -58,8 +59,8 @@ impl TryFrom<Exponents> for GivenLaw {
 }
 
 impl GivenLaw {
-    /// Returns `law`, in which the exponents that the user gave replace the exponents of `law`
-    /// itself.
+    /// Returns `law` with the exponents that the user gave; the other exponents of `law` stay
+    /// unchanged.
     #[must_use]
     pub fn over(&self, law: Law) -> Law {
         let given = |given: Option<f64>, own: Exponent| given.map_or(own, Exponent::given);

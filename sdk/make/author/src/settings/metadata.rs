@@ -11,8 +11,8 @@ settings! {
     /// value; an empty text removes it.
     #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
     pub struct Metadata {
-        /// Name of the texture. In a recipe, `name` is not a key of the metadata. It is a key
-        /// beside `recordings`.
+        /// Name of the texture. In a recipe, `name` is not a key of the metadata. Instead, it is a
+        /// key at the same level as `recordings`.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,
@@ -108,7 +108,7 @@ impl Metadata {
     /// of the form `FIELD: SENTENCE`.
     ///
     /// # Errors
-    /// When an entry would make the asset invalid.
+    /// Returns an error if an entry would make the asset invalid.
     pub fn check(&self) -> Result<Vec<String>, AuthorError> {
         let refuse = |field, problem: String| Err(AuthorError::Metadata { field, problem });
         if self.name.as_deref().is_some_and(|name| name.trim().is_empty()) {

@@ -1,4 +1,4 @@
-//! Settings that belong together, under one name.
+//! Presets: named groups of settings.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,8 +9,9 @@ use crate::{Averaging, Level, SegmentChoice};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
-    /// The paper's choices (Balasubramanian & Vardar 2026) where htex has other defaults: the
-    /// paper's five models, sweeps, averaged magnitudes, and the options in [`Preset::options`].
+    /// The paper's choices (Balasubramanian & Vardar 2026) wherever they differ from htex's
+    /// defaults: the paper's five models, sweeps, averaged magnitudes, and the options in
+    /// [`Preset::options`].
     Paper,
 }
 
@@ -25,7 +26,7 @@ impl Preset {
         }
     }
 
-    /// Returns the short names of the models that are fitted.
+    /// Returns the short names of the models that the preset fits.
     pub const fn models(self) -> &'static [&'static str] {
         match self {
             Self::Paper => &["ar", "mfcc", "speak", "sbeta", "sslope"],
@@ -63,7 +64,8 @@ impl Preset {
         }
     }
 
-    /// Returns whether only recorded conditions are fitted.
+    /// Returns whether models are fitted to the recorded conditions only, without computed extra
+    /// conditions.
     pub const fn recorded_only(self) -> bool {
         match self {
             Self::Paper => true,

@@ -1,4 +1,4 @@
-//! Settings for reading recordings, by name.
+//! Named settings for reading recordings.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use htex_recording::read_response;
 use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
 
 settings! {
-    /// Settings for reading recordings. A missing setting has its default.
+    /// Settings for reading recordings. A setting that is missing has its default value.
     ///
     /// ```
     /// use htex_author::settings::ReadingSettings;
@@ -145,7 +145,8 @@ impl ReadingSettings {
     /// Returns the options for reading each of `count` recordings.
     ///
     /// # Errors
-    /// When a map of columns cannot be read, or the number of trackers is neither one nor `count`.
+    /// Returns an error if a column map cannot be read, or if the number of trackers is neither one
+    /// nor `count`.
     pub fn read_options(&self, count: usize) -> Result<Vec<ReadOptions>, AuthorError> {
         let options = ReadOptions::default()
             .with_rate_hz(self.rate_hz)
@@ -168,8 +169,8 @@ impl ReadingSettings {
         }
     }
 
-    /// Returns whether a setting determines how the recordings' columns are read: the rate, the
-    /// scale, the map, the tracker, or a quantity other than the default.
+    /// Returns whether a setting determines how columns of the recordings are read. Such settings
+    /// are the rate, the scale, the map, the tracker, and a quantity other than the default.
     #[must_use]
     pub fn says_columns(&self) -> bool {
         let scaled = self.rate_hz.or(self.scale).is_some();
@@ -177,11 +178,11 @@ impl ReadingSettings {
         scaled || self.map.is_some() || self.tracker.is_some() || is_other
     }
 
-    /// Returns the options for computing spectra. Reads the file with the setup's response if one
-    /// is given.
+    /// Returns the options for computing spectra. If a file with the setup's response is given,
+    /// this method reads it.
     ///
     /// # Errors
-    /// When the response cannot be read.
+    /// Returns an error if the response cannot be read.
     pub fn spectrum_options(&self) -> Result<SpectrumOptions, AuthorError> {
         let response = self.response.as_deref().map(read_response);
         Ok(SpectrumOptions::default()

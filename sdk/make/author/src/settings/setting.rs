@@ -140,8 +140,8 @@ macro_rules! settings {
                 Self { $($field: self.$field.over(under.$field),)* }
             }
 
-            /// Returns the settings that an asset's provenance stores: those that differ from their
-            /// defaults, under the names of the command's flags.
+            /// Returns the settings that an asset's provenance stores: all settings that differ
+            /// from their defaults. Each setting has the name of the command's flag.
             pub fn recorded(&self) -> std::collections::BTreeMap<String, String> {
                 #[allow(unused_imports)]
                 use crate::settings::setting::Setting;

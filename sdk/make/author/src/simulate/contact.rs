@@ -1,4 +1,5 @@
-//! Model of skin, rig and sensor: computes measured forces from the finger's motion.
+//! Model of skin, rig and sensor: for a motion of the finger, computes the forces that the sensor
+//! would measure.
 
 use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::normal::Normal;

@@ -1,6 +1,6 @@
 //! Departures of simulated hands and surfaces from the law of a rigid relief.
 //!
-//! If a finger slides over a rigid relief, the frequencies are proportional to the speed and the
+//! If a finger slides over a rigid relief, the frequencies are proportional to the speed, and the
 //! level of the friction is proportional to the normal force. Recorded textures depart from both
 //! rules. On four materials at three speeds, the level rose with the speed to the power of 0.69 to
 //! 0.82. The level changed with the normal force to a power between -0.07 and 2.6. When a tool

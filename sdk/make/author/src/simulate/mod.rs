@@ -1,9 +1,9 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. For five surfaces, the
-//! paper's Results state which of the surfaces are stronger, and at which frequencies their energy
-//! lies. The five simulated surfaces agree with this description. The simulation does not use
-//! measurements of real surfaces. Every simulated file states that it is simulated.
+//! Use them for tests, examples and first steps without a recording rig. The paper's Results state,
+//! for five surfaces, which are stronger and at which frequencies their energy lies. The five
+//! simulated surfaces agree with this description. The simulation does not use measurements of real
+//! surfaces. Every simulated file states that it is simulated.
 //!
 //! The hand's speed and force vary. A fixed relief gives the friction coefficient at each position
 //! along the surface. The simulation reads the relief at the finger's position. Therefore the
@@ -196,7 +196,7 @@ impl SimulationOptions {
     /// recording by this response gives the spectrum of the force at the finger.
     ///
     /// # Errors
-    /// When an option is out of range.
+    /// Returns an error if an option is out of range.
     ///
     /// ```
     /// use htex_author::simulate::{SimulationOptions, Surface};
@@ -370,7 +370,7 @@ impl Simulation {
 /// Simulates a recording. Equal options give equal samples on every machine.
 ///
 /// # Errors
-/// When an option is out of range.
+/// Returns an error if an option is out of range.
 pub fn simulate(options: &SimulationOptions) -> Result<Simulation, AuthorError> {
     options.check()?;
     let parameters = options.surface.parameters();

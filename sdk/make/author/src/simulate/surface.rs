@@ -1,4 +1,4 @@
-//! The parameters of the five surfaces.
+//! The parameters of the five surfaces that can be simulated.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,7 +14,7 @@ pub enum Surface {
     FineFabric,
     /// Weak and low-frequency: a weave of a millimetre.
     CoarseFabric,
-    /// Strong and low-frequency: flutes two millimetres apart.
+    /// Strong and low-frequency: parallel ridges (flutes), two millimetres apart.
     CorrugatedPaper,
     /// Weak and low-frequency: shallow embossing.
     Vinyl,

@@ -2,9 +2,9 @@
 //!
 //! The relief is a stationary process along the path, with a known spectral density over spatial
 //! frequency. The speed converts spatial frequency to hertz. The force scales the density, and skin
-//! and rig filter it. A spectrum is computed with a periodic Hann window of 0.2 s. The expected
-//! power of this spectrum at a multiple of 5 Hz is the integral of the filtered density multiplied
-//! by the window's power transfer.
+//! and rig filter it. A spectrum is computed with a periodic Hann window of 0.2 s. To get the
+//! expected power of this spectrum at a multiple of 5 Hz, the module multiplies the filtered
+//! density by the window's power transfer function and integrates the product.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -55,9 +55,9 @@ impl SimulationOptions {
     /// force.
     ///
     /// # Errors
-    /// When an option is out of range, when the motion is not free, or when the level drifts or the
-    /// finger lifts. Sweeps have no closed-form spectrum because they run over one fixed piece of
-    /// the material.
+    /// Returns an error if an option is out of range, if the motion is not free, or if the level
+    /// drifts or the finger lifts. Sweeps have no closed-form spectrum because they run over one
+    /// fixed piece of the material.
     pub fn truth(&self) -> Result<Truth, AuthorError> {
         self.check()?;
         if !self.departures.is_steady() {
@@ -101,7 +101,7 @@ impl Truth {
     /// axes, and includes the rig's response and the sensor's noise.
     ///
     /// # Errors
-    /// When the speed or the force is out of the simulator's range.
+    /// Returns an error if the speed or the force is out of the simulator's range.
     pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, AuthorError> {
         check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
         check_range("force_n", force_n, 0.01, 10.0)?;

@@ -11,11 +11,11 @@ use crate::tradeoff::setting::Keep;
 /// The cost on the horizontal axis, against which the error is plotted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Size of the stored parameters, bytes. For this cost, the error relative to the fitted
-    /// spectrum is measured on the model's magnitudes.
+    /// Size of the stored parameters, bytes. If a plot has this cost, its errors relative to the
+    /// fitted spectrum are measured on the model's magnitudes.
     Bytes,
-    /// Computing time, nanoseconds per sample. For this cost, the error relative to the fitted
-    /// spectrum is measured on rendered samples.
+    /// Computing time, nanoseconds per sample. If a plot has this cost, its errors relative to the
+    /// fitted spectrum are measured on rendered samples.
     Time,
 }
 

@@ -34,7 +34,7 @@ fn cells(p: &Point) -> Vec<(&'static str, String)> {
     cells
 }
 
-/// Writes a header line, then one line for every setting on every recording.
+/// Writes a header line, then one line for every combination of a setting and a recording.
 pub fn csv(tradeoff: &Tradeoff) -> String {
     let mut lines = Vec::new();
     for point in &tradeoff.points {

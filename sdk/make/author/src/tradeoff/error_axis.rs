@@ -14,9 +14,9 @@ pub enum ErrorAxis {
     /// therefore as good as a second recording.
     #[default]
     HeldOut,
-    /// Error relative to the spectrum to which the setting was fitted, in decibels. In a comparison
-    /// with the size in bytes, the error is measured on the model's magnitudes. In a comparison
-    /// with the time, the error is measured on rendered samples.
+    /// Error relative to the spectrum to which the setting was fitted, in decibels. When settings
+    /// are compared by error and size in bytes, the error is measured on the model's magnitudes.
+    /// When settings are compared by error and time, the error is measured on rendered samples.
     Fitted(ErrorMeasure),
 }
 
@@ -29,7 +29,7 @@ impl ErrorAxis {
         Self::Fitted(ErrorMeasure::LogSpectral),
     ];
 
-    /// Returns the name in JSON: `held_out`.
+    /// Returns the name in JSON, e.g. `held_out`.
     pub const fn id(self) -> &'static str {
         match self {
             Self::HeldOut => "held_out",
@@ -42,7 +42,7 @@ impl ErrorAxis {
         Self::ALL.into_iter().find(|error| error.id() == id)
     }
 
-    /// Returns the name for use in a sentence: `held-out error`.
+    /// Returns the name for use in a sentence, e.g. `held-out error`.
     pub fn name(self) -> &'static str {
         match self {
             Self::HeldOut => "held-out error",

@@ -1,5 +1,6 @@
-//! The two halves of a recording from which held-out errors are measured. Contenders are fitted to
-//! the odd blocks and compared with the even blocks.
+//! The two halves of a recording, which are used to measure held-out errors. The sweep fits each
+//! contender (a model with a setting, or a baseline) to the odd blocks and compares it with the
+//! even blocks.
 
 use crate::{AuthorError, OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
 

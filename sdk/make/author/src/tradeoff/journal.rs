@@ -112,7 +112,7 @@ impl Journal {
     /// Removes the journal's file. Call this after the results have been written elsewhere.
     ///
     /// # Errors
-    /// When the file cannot be removed.
+    /// Returns an error when the file cannot be removed.
     pub fn discard(self) -> Result<(), AuthorError> {
         let removed = self.place().and_then(|(own, name)| own.remove(&name));
         self.with_path(removed)

@@ -24,11 +24,11 @@ pub struct Knee {
     /// Cost at the knee, in bytes or ns per sample.
     pub cost: f64,
     pub error: ErrorAxis,
-    /// Error at the knee. A held-out error is in units of the error of a second recording. All
+    /// Error at the knee. A held-out error is a multiple of the error of a second recording. All
     /// other errors are in decibels.
     pub error_value: f64,
-    /// Model and setting of the next step up: the cheapest setting on the front whose error is
-    /// lower than the error at the knee by at least 0.05. `None` if there is no such setting.
+    /// Model and setting of the next step up: the cheapest setting on the front with an error at
+    /// least 0.05 lower than the error at the knee. `None` if there is no such setting.
     pub next: Option<String>,
     /// A sentence that describes the knee, and the lower error and higher cost of the next step.
     pub words: String,

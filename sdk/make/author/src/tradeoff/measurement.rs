@@ -1,4 +1,4 @@
-//! Measuring a contender's accuracy on its magnitudes and on rendered samples.
+//! Measures how accurate a contender's magnitudes and rendered samples are.
 
 use crate::{AuthorError, read_spectrum, spectrum_of_samples};
 use htex_format::Measure;

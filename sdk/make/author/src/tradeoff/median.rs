@@ -1,5 +1,5 @@
-//! Medians of each setting's measurements over several recordings, and shares of recordings with a
-//! small difference.
+//! Medians of each setting's measurements over several recordings, and the shares of recordings in
+//! which a difference is small.
 
 use std::collections::BTreeMap;
 

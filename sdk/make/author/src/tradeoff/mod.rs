@@ -3,9 +3,9 @@
 //!
 //! [`sweep`] fits, measures and times all settings on recordings ([`Subject`]). A setting is a
 //! value for each knob: the fit options of a model, and options for storing and playing. Two
-//! baselines are also measured, for comparison. [`Tradeoff::new`] finds fronts, knees and warnings
-//! in the result. [`page`] and [`csv`] write this evaluation. An interrupted sweep continues from
-//! its [`Journal`].
+//! baselines are also measured, for comparison. [`Tradeoff::new`] finds Pareto fronts, their knees,
+//! and warnings in the result. [`page`] and [`csv`] write this evaluation. An interrupted sweep
+//! continues from its [`Journal`].
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Evaluation of a sweep: fronts, knees and warnings.
+//! Evaluation of a sweep: Pareto fronts, their knees, and warnings.
 
 use htex_base::finding::Notice;
 use serde::Serialize;
@@ -60,8 +60,8 @@ pub struct RecordingSummary {
     pub simulated: bool,
     /// Repeatability of the recording (RMS over nine bands), dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Total number of odd and even blocks of time in the parts of the recording that are read. The
-    /// even blocks are held out. `None` if there are too few blocks.
+    /// Number of time blocks, odd and even together, in the parts of the recording that the sweep
+    /// reads. The even blocks are held out. `None` if there are too few blocks.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,

@@ -41,8 +41,8 @@ pub struct Point {
     pub ns_per_sample: f64,
     /// Half the interquartile range of the times per sample, divided by their median.
     pub spread: f64,
-    /// Size of the stored parameters, bytes. For the recording, size of its single-precision
-    /// samples.
+    /// Size of the stored parameters, bytes. For the baseline that plays the recording: size of the
+    /// single-precision samples.
     pub bytes: usize,
     /// Memory that the playback needs for a stored loop or a filter, bytes.
     pub kept_bytes: usize,

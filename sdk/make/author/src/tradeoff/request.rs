@@ -25,8 +25,9 @@ pub struct Request {
     /// Whether to measure less: only one knob is varied at a time, each knob has three values, and
     /// fewer runs are timed.
     pub quick: bool,
-    /// The error for fronts and knees. If `None`, the held-out error is used. If a recording is too
-    /// short to hold out a part of it, the third-octave error of the fit is used instead.
+    /// The error from which Pareto fronts and their knees are computed. If `None`, the held-out
+    /// error is used. If a recording is too short to hold out a part of it, the third-octave error
+    /// of the fit is used instead.
     pub error: Option<ErrorAxis>,
     /// The file of the running program or library. A sweep does not continue a journal that another
     /// build of this program wrote.

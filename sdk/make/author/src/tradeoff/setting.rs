@@ -1,4 +1,4 @@
-//! Settings. A setting has a value for each knob of a sweep.
+//! Settings. A setting has a value for each knob (varied option) of a sweep.
 
 use crate::AuthorError;
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ pub struct Setting {
     pub block_samples: usize,
     /// Output sample rate, hertz.
     pub output_rate_hz: f64,
-    /// How the model is loaded (`native`, `wasm`); empty for the model's first way of loading.
+    /// How the model is loaded (`native`, `wasm`); an empty text selects the model's first loader.
     pub loader: String,
 }
 

@@ -1,5 +1,5 @@
-//! The settings of a sweep, combined from the values of the models' fit options and of the options
-//! for playing.
+//! The settings of a sweep, made by combining values of the models' fit options with values of the
+//! options for playing.
 
 use htex_host::{FitOption, LoadedModel};
 

@@ -1,4 +1,4 @@
-//! The samples that a contender plays.
+//! The samples that each contender (a model or a baseline in the comparison) plays.
 
 use htex_dsp::resample::Resampler;
 use htex_dsp::seam::Loop;

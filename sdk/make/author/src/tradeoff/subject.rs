@@ -1,4 +1,5 @@
-//! Prepares the recordings on which a sweep measures its contenders (subjects).
+//! Prepares the subjects of a sweep: the recordings on which the sweep measures its contenders
+//! (models with a setting, and baselines).
 
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::finding::Notice;
@@ -30,7 +31,7 @@ impl Subject {
     /// are errors or warnings is refused.
     ///
     /// # Errors
-    /// When the recording cannot be used.
+    /// Returns an error if the recording cannot be used.
     pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
         let recording = &take.recording;
         let read = segment_take(take, options, strict)?;

@@ -41,8 +41,9 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 /// times of the settings on one core.
 ///
 /// # Errors
-/// When the journal cannot be written, or when no model can be fitted to a recording. Also when the
-/// held-out error is requested but a recording is too short to hold out a part of it.
+/// Returns an error when the journal cannot be written, or when no model can be fitted to a
+/// recording. Also returns an error when the held-out error is requested but a recording is too
+/// short to hold out a part of it.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,

@@ -1,4 +1,5 @@
-//! Interleaved timing of contenders on one core.
+//! Measures the run times of all contenders of a sweep on one core, with the runs of the contenders
+//! interleaved.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -124,8 +124,8 @@ impl Ahap {
     /// Reads an `.ahap` file.
     ///
     /// # Errors
-    /// When the file is not JSON, when its version or structure is unknown, or when a number is out
-    /// of range. The fault names the place in the file.
+    /// Returns an error if the file is not JSON, if its version or structure is unknown, or if a
+    /// number is out of range. The fault names the place in the file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let ahap: Self = json::read(bytes)?;
         if ahap.version != 1.0 {

@@ -81,10 +81,10 @@ struct Buffer {
 /// Reads the texture of a `.glb` or a `.gltf` file.
 ///
 /// # Errors
-/// When the file is not glTF 2.0, when no material has a texture, when several materials have
-/// different textures, or when the bytes of the asset are not where the file states. The fault
-/// names the place: a JSON pointer, or a byte of a `.glb`. This function does not check that the
-/// bytes are a valid asset.
+/// Returns an error if the file is not glTF 2.0, if no material has a texture, if several materials
+/// have different textures, or if the bytes of the asset are not where the file states. The error
+/// names the place: a JSON pointer, or a byte offset in a `.glb`. This function does not check that
+/// the bytes are a valid asset.
 pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     if file.len() as u64 > json::MOST_BYTES {
         let most = json::MOST_BYTES;

@@ -28,7 +28,8 @@ pub(crate) fn import(bytes: &[u8], naming: &Naming<'_>) -> Result<ImportedAsset,
 /// files contain none.
 ///
 /// # Errors
-/// When a filter cannot be stored because its poles or zeros are too close to each other.
+/// Returns an error if a filter cannot be stored because its poles or zeros are too close to each
+/// other.
 pub fn asset(texture: &Texture, naming: &Naming<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| Fault::whole(error.to_string()))?;

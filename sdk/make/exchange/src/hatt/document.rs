@@ -1,6 +1,6 @@
 //! Reads XML into elements with names, texts and line numbers. The reader does not support document
 //! type definitions, so a file can use only the five predefined entities of XML. The size limits
-//! are far above the toolkit's model files, which have about 0.2 MB.
+//! are far above the size of the toolkit's model files, about 0.2 MB.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};

@@ -35,7 +35,7 @@ pub struct Texture {
 /// Reads a model file.
 ///
 /// # Errors
-/// When the file is invalid. The fault names the line and the element.
+/// When the file is invalid. The error names the line and the element.
 pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
     let root = root(bytes)?;
     if root.name != "modelSet" {

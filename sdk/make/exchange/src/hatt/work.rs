@@ -1,4 +1,4 @@
-//! Limits the total computation for all filters of a file.
+//! Limits the total amount of computation for all filters of a file.
 
 /// Largest work for a file. The unit is the comparison of one zero with another zero, in one round
 /// of the search for zeros. A comparison takes some 7 ns, so the limit is about 1.5 s. A file of

@@ -217,8 +217,8 @@ impl Hjif {
     /// Reads an `.hjif` file.
     ///
     /// # Errors
-    /// When the file is not JSON, has another structure, or a number is out of range. The fault
-    /// names the place.
+    /// Returns an error if the file is not JSON, has another structure, or a number is out of
+    /// range. The fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let hjif: Self = json::read(bytes)?;
         check::check(&hjif)?;

@@ -33,8 +33,8 @@ impl Hjif {
     /// speed, mm/s.
     ///
     /// # Errors
-    /// When the channel is longer than ten minutes, or when rendering all of its effects would take
-    /// too much computation.
+    /// Returns an error if the channel is longer than ten minutes, or if rendering all of its
+    /// effects would take too much computation.
     pub fn rendered(&self, rate_hz: f64, speed_mm_s: f64) -> Result<Vec<f64>, Fault> {
         let Some(chosen) = self.chosen() else {
             return Err(Fault::new("/perceptions", "no perception vibrates"));

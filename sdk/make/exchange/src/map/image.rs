@@ -34,9 +34,9 @@ pub struct Image {
 /// Reads a PNG file with grey values. A colour image is accepted if all of its colours are grey.
 ///
 /// # Errors
-/// When the file is not a PNG, or when it has colours, transparent pixels, several frames, more
-/// than 8 bits per channel, or more than 255 pixels in a row or a column. The fault names the
-/// place.
+/// Returns an error if the file is not a PNG, or if it has colours, transparent pixels, several
+/// frames, more than 8 bits per channel, or more than 255 pixels in a row or a column. The fault
+/// names the place.
 pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     if bytes.len() > MOST_BYTES {
         let size = bytes.len();

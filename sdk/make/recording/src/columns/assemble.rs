@@ -1,4 +1,4 @@
-//! Building a recording from the columns of a file.
+//! Builds a recording from the columns of a file.
 
 use htex_base::finding::Notice;
 use htex_format::Quantity;

@@ -90,9 +90,10 @@ pub struct MapEntry {
     pub role: Role,
     /// The column, or an expression over columns.
     pub values: Expression,
-    /// Factor that converts the values to the role's unit (N, the quantity's unit, mm/s, s, mm).
-    /// Without a factor, the unit in a column's name determines the conversion, but the values of
-    /// an expression must already be in the role's unit.
+    /// Factor that converts the values to the role's unit (N, the quantity's unit, mm/s, s, mm). If
+    /// an entry names a column and no factor, the unit in the column's name determines the
+    /// conversion. If it has an expression and no factor, the values of the expression must already
+    /// be in the role's unit.
     pub scale: Option<f64>,
 }
 
@@ -100,8 +101,8 @@ impl MapEntry {
     /// Parses the values of a role, in the form `EXPRESSION[:SCALE]`.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if the text is not an expression. The problem gives the place in the
-    /// text.
+    /// Returns [`ReadProblem::Map`] if the text is not an expression. The error gives the place in
+    /// the text.
     ///
     /// ```
     /// # use htex_recording::{MapEntry, Role};
@@ -150,8 +151,8 @@ impl ColumnMap {
     /// Creates a map from its entries.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if a role or a column is given twice, or if a single axis is given
-    /// together with several axes.
+    /// Returns [`ReadProblem::Map`] if a role or a column is given twice, or if a single axis is
+    /// given together with several axes.
     pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
         let mut map = Self::default();
         for entry in entries {

@@ -36,12 +36,13 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Assigns roles to channels. Each channel is given by its name and its unit. An unknown unit
-    /// is an empty text. If the name also contains a unit, the unit in the name takes precedence.
+    /// Assigns roles to channels. Pass the name and the unit of each channel. If the unit is
+    /// unknown, pass an empty text. If the name also contains a unit, the unit in the name takes
+    /// precedence.
     ///
     /// # Errors
-    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. `source` names
-    /// the origin of the channels in messages.
+    /// Returns [`ReadProblem::Columns`] in the same cases as for a file with these columns.
+    /// `source` names the origin of the channels in messages.
     pub fn new(
         source: &str,
         channels: &[(String, String)],

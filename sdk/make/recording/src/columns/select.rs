@@ -1,4 +1,4 @@
-//! Selects the columns of a file that are used, with their roles and units.
+//! Determines which columns of a file are used, and the roles and units of these columns.
 
 use htex_base::finding::{Hint, Notice};
 use htex_format::Quantity;

@@ -1,4 +1,4 @@
-//! The columns of an Arrow schema, and for each column its buffers in a batch.
+//! Reads an Arrow schema: the columns, and the position of each column's buffers in a batch.
 
 use arrow_ipc::{Endianness, Field, Precision, Type};
 

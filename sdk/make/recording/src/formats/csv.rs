@@ -1,4 +1,4 @@
-//! Reader of delimited text (CSV) as named columns of numbers.
+//! Reads delimited text (CSV) into named columns of numbers.
 
 use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::blocks::Blocks;

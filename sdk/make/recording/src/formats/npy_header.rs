@@ -1,5 +1,5 @@
-//! The header of an NPY file: `{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 3), }`, or
-//! of records `{'descr': [('time_s', '<f8'), ('fx_n', '<f4')], …}`.
+//! The header of an NPY file: `{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 3), }` for
+//! numbers, or `{'descr': [('time_s', '<f8'), ('fx_n', '<f4')], …}` for records.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! An input that several third-party readers can share.
+//! An input that several readers from third-party libraries can share.
 
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -2,9 +2,9 @@
 //! rates.
 //!
 //! Layout: "TDMS File Format Internal Structure", National Instruments. A file consists of
-//! segments. Each segment lists the objects whose properties or data layout it changes, followed by
-//! chunks of raw data. The reader first reads the directory of all segments, and then the values of
-//! the channels that are used.
+//! segments. Each segment of a file lists the objects whose properties or data layout change from
+//! this segment on; chunks of raw data follow. The reader first reads the directory of all
+//! segments, and then the values of the channels that are used.
 //!
 //! This reader was written for this project because the crate `tdms` panics if a damaged file lacks
 //! certain values, and because it cannot read from memory.

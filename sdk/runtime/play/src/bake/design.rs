@@ -119,8 +119,8 @@ impl BakeLimits {
         Self { within_db, longest: Self::MOST, fluctuation: false }
     }
 
-    /// Limits the number of coefficients of a filter. A limit below [`Self::FEWEST`] has the effect
-    /// of [`Self::FEWEST`].
+    /// Limits the number of coefficients of a filter. A limit below [`Self::FEWEST`] counts as
+    /// [`Self::FEWEST`].
     #[must_use]
     pub fn with_longest(self, longest: usize) -> Self {
         Self { longest, ..self }

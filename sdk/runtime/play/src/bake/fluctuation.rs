@@ -1,4 +1,4 @@
-//! The fluctuation in time, as a block stores it.
+//! How a block stores the fluctuation of a texture's strength over time.
 
 use htex_format::Fluctuation;
 

@@ -22,8 +22,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Makes a grid of speeds, mm/s, and forces, newtons, given in any order. Values are rounded to
-    /// single precision.
+    /// Makes a grid from speeds (mm/s) and forces (newtons), which may be given in any order.
+    /// Values are rounded to single precision.
     ///
     /// # Errors
     /// Returns an error if an axis is empty or has more than 32 different values. Also returns an

@@ -20,7 +20,7 @@
 //! condition. For the AR model, a lattice filter would need less computation. But between
 //! conditions, the spectra of a lattice filter would differ from the model's spectra, because the
 //! AR model interpolates line spectral frequencies. Where the mixed filters differ from the model
-//! by more than the limit in [`BakeLimits`], further conditions are inserted.
+//! by more than the limit in [`BakeLimits`], the conversion inserts further conditions.
 #![forbid(unsafe_code)]
 
 mod compress;

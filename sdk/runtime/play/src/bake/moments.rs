@@ -1,5 +1,5 @@
-//! Computes the spectrum and level of a representation at any motion. A motion has the same effects
-//! on spectrum and level as in a voice.
+//! Computes the spectrum and level of a representation at any motion. The motion changes spectrum
+//! and level in the same way as in a voice.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -166,8 +166,9 @@ pub fn is_rust_name(name: &str) -> bool {
 }
 
 /// Returns a C header that defines a block as an array of bytes with this name. The header also
-/// defines a macro with the number of values that a player of this block needs. For an array
-/// `felt`, the macro is `FELT_NUMBERS`. Comments state the author and the licence.
+/// defines a macro for `HTEX_PLAYER_MEMORY`: how many numbers the memory of a player for this block
+/// contains. For an array `felt`, the macro is `FELT_NUMBERS`. Comments state the author and the
+/// licence.
 pub fn c_header(name: &str, baked: &BakeResult) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();

@@ -1,5 +1,5 @@
-//! Modulates the amplitude of a carrier, to prevent charge leakage. The carrier has 7 kHz in
-//! Balasubramanian & Vardar 2026.
+//! Modulates the amplitude of a carrier, to prevent charge leakage. In Balasubramanian & Vardar
+//! 2026, the frequency of the carrier is 7 kHz.
 
 use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;

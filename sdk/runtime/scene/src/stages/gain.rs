@@ -1,7 +1,8 @@
 //! Converts samples from the textures' unit to the device's unit. The result depends on the device.
 //! If the scene states a gain for the conversion to the device's physical unit, the result is in
-//! this unit. For a sound device, the result has the level of a preview. For an electrovibration
-//! display, the result is the radicand from which the square-root stage computes the drive voltage.
+//! this unit. For a sound device, the result has the preview level that the scene sets. For an
+//! electrovibration display, the result is the radicand from which the square-root stage computes
+//! the drive voltage.
 
 use htex_device::Quantity;
 

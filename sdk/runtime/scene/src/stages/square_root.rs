@@ -1,7 +1,7 @@
-//! Shift and square root of the samples. The friction that an electrovibration display adds is
-//! proportional to the square of its voltage, so the voltage is V = V_g sqrt(y + |min y|) cos(2 pi
-//! f_c t). (The paper, under "Electrovibration rendering", prints min|y| instead, which allows
-//! negative radicands.)
+//! Shifts the samples and takes their square root. The friction that an electrovibration display
+//! adds is proportional to the square of its voltage, so for the samples y the voltage is V = V_g
+//! sqrt(y + |min y|) cos(2 pi f_c t). (The paper, under "Electrovibration rendering", prints min|y|
+//! instead, which allows negative radicands.)
 //!
 //! The minimum of a stream is not known in advance. Therefore, the stage uses [`HEADROOM`] times
 //! the RMS of the scene's loudest surface in place of |min y|. Radicands that are still negative

@@ -1,4 +1,4 @@
-//! Synthesis: a voice of the surface's model, with unit RMS.
+//! The synthesis stage: a voice of the surface's model, scaled to an RMS of 1.
 
 use htex_play::{Motion, SampleSource};
 

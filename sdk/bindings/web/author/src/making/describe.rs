@@ -1,5 +1,5 @@
 //! Converts findings, warnings, notes and spectra to JSON documents. Each finding, warning or note
-//! names the settings that would help against its problem.
+//! names the settings that may solve its problem.
 
 use htex_author::TextureSpectrum;
 use htex_base::finding::{Finding, Hint, Notice, Severity};

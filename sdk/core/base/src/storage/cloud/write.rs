@@ -1,5 +1,5 @@
-//! Writes files completely or not at all: with one request, or in parts that become a file only
-//! with the last request.
+//! Writes a file completely or not at all: in one request, or in parts that the service joins into
+//! a file only at the last request.
 
 use std::fs::File;
 use std::io::Read;

@@ -5,7 +5,7 @@ pub struct TextureReport {
     pub title: String,
     /// Paragraphs below the title.
     pub intro: Vec<String>,
-    /// The measures of the models; each becomes a table.
+    /// The measures by which the page compares the models; each measure becomes a table.
     pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
@@ -24,15 +24,15 @@ pub struct Share {
     /// The model's short name.
     pub short_name: String,
     pub textures: usize,
-    /// Textures that cannot be felt at all.
+    /// Number of textures that cannot be felt at all.
     pub below_detection_threshold: usize,
-    /// Textures whose difference is below the difference threshold, in every third octave and in
-    /// total.
+    /// Number of textures whose error is below the difference threshold, in every third octave and
+    /// in total.
     pub below_difference_threshold: usize,
-    /// Textures whose difference is below the difference threshold of a person with a sensitive
-    /// finger.
+    /// Number of textures whose error is below the difference threshold of a person with a
+    /// sensitive finger.
     pub below_if_sensitive: usize,
-    /// Textures whose nine-band error is at most 3.5 times the recording's repeatability.
+    /// Number of textures whose nine-band error is at most 3.5 times the recording's repeatability.
     pub within_repeatability: usize,
 }
 

@@ -1,5 +1,6 @@
-//! Tables of errors. For each measure, one table with a row for each texture and a column for each
-//! model; for each texture, one table with a row for each model and a column for each band.
+//! Tables of errors. Two kinds of tables: for each measure, a table with a row for each texture and
+//! a column for each model; for each texture, a table with a row for each model and a column for
+//! each band.
 
 use super::data::{Measure, ModelResult, Texture, TextureReport};
 use crate::REPEATABILITY_BOUND;

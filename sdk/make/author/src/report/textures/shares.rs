@@ -1,5 +1,5 @@
-//! Table of counts by model: number of textures whose error is below the difference threshold, and
-//! number of textures whose error is within the recording's own variation.
+//! Table with two counts for each model: the number of textures whose error is below the difference
+//! threshold, and the number of textures whose error is within the recording's own variation.
 
 use super::data::{Share, TextureReport};
 use crate::report::page::paragraph;

@@ -35,9 +35,9 @@ use crate::recordings::RecordingArgs;
 /// can feel. It compares, in third octaves, how far each spectrum is above the fingertip's
 /// detection threshold.
 ///
-/// Two signals with equal spectra can still fluctuate differently. The command also compares how
-/// the power in third octaves rises and falls at 1 to 64 Hz (`fluct`), if the recordings last at
-/// least 3 s.
+/// Two signals with equal spectra can still fluctuate differently. If each recording lasts at least
+/// 3 s, the command also compares the fluctuations (`fluct`): how strongly the power in third
+/// octaves varies at rates of 1 to 64 Hz.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording ({}), or an asset to compare with another one", format_names()))]

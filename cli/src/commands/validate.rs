@@ -28,9 +28,9 @@ use crate::wasm_limits::WasmLimit;
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer to its
 /// place in the document or the recording. If a rule is also in a JSON Schema, the finding names
-/// the rule's place in the schema. For the models that this program has, htex also compares the
-/// fields in an asset with the fields in the model's descriptor. In a recipe, htex checks the keys,
-/// files, plugins, options and gates (requirements for the textures).
+/// the rule's place in the schema. If htex has the model that an asset uses, it also compares the
+/// asset's fields with the fields in the descriptor of the model. In a recipe, htex checks the
+/// keys, files, plugins, options and gates (requirements for the textures).
 ///
 /// htex recognises a file by its name: *.htex is an asset, *.htexlib a library, *.json a scene or a
 /// descriptor, *.toml a recipe. For a file with another name, the first bytes decide: a ZIP archive

@@ -14,8 +14,8 @@ use crate::signals;
 /// Polling interval for the start request of the page.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Options for the guidance, which shows a person how to move the finger: where to show it, and
-/// which strokes to show.
+/// Options for the guidance, which shows a person how to move the finger. They choose where the
+/// guidance appears and which strokes it shows.
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {

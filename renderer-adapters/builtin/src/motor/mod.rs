@@ -26,7 +26,7 @@ use htex_dsp::envelope::Measurement;
 /// A motor or interface that plays blocks. Implement this trait to add a device that cannot play
 /// samples.
 pub trait Motor: Send {
-    /// Starts to play a block. The device makes the next call when the duration of this block is
+    /// Starts to play a block. htex calls this function again when the duration of the block is
     /// over.
     ///
     /// # Errors

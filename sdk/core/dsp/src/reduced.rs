@@ -67,7 +67,8 @@ pub struct Point {
     pub time_ns: i64,
     /// Strength, 0 to 1.
     pub strength: f32,
-    /// Mean frequency as a place in the scale's range of frequencies, 0 to 1.
+    /// Position of the mean frequency between the lowest frequency of the scale (0) and its highest
+    /// frequency (1).
     pub place: f32,
 }
 

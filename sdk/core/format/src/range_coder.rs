@@ -1,5 +1,5 @@
-//! A binary range coder: compresses a sequence of yes-or-no decisions. The more probable a decision
-//! was, the fewer bits it takes.
+//! A binary range coder, which compresses a sequence of yes-or-no decisions. The more probable a
+//! decision was, the fewer bits it takes.
 //!
 //! All arithmetic is in integers, so every machine writes the same bytes. The encoder writes the
 //! fewest bytes from which the decisions can be read, and drops zeros at the end. So a sequence of

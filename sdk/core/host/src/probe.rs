@@ -70,8 +70,8 @@ impl LoadedModel {
         self.check("magnitude", raw.magnitude(parameters, band, frequency_hz, magnitude))
     }
 
-    /// Interpolates concatenated parameter sets. Writes the result to `parameters`, which may be
-    /// too short.
+    /// Interpolates concatenated parameter sets, and writes the result to `parameters`. Returns the
+    /// length of the whole result, also if `parameters` is shorter.
     ///
     /// # Errors
     /// Returns an error if the model returns one.
@@ -85,7 +85,8 @@ impl LoadedModel {
         self.check("interpolate", answer)
     }
 
-    /// Writes the descriptor to `out`, which may be too short. Returns the descriptor's length.
+    /// Writes the descriptor to `out`. Returns the length of the whole descriptor, also if `out` is
+    /// shorter.
     ///
     /// # Errors
     /// Returns an error if the model returns one.

@@ -229,8 +229,8 @@ impl StaticOption {
 
     /// Sets the values that a sweep of accuracy against cost (`htex tradeoff`) tries, from coarse
     /// to fine. The sweep tries all combinations of these values with the sweep values of the other
-    /// options. For named choices, the values are their indices. If a model has no option with
-    /// sweep values, the sweep covers the ranges of all options.
+    /// options. If an option has named choices, its values are their indices. If a model has no
+    /// option with sweep values, the sweep covers the ranges of all options.
     pub const fn sweep(self, values: &'static [f64]) -> Self {
         Self { sweep: values, ..self }
     }

@@ -86,7 +86,7 @@ pub(crate) struct TexturePlace {
     /// Range of the bytes that only this texture has, counted from the start of the payload.
     pub own: Range<u64>,
     /// Objects that the texture shares with other textures, in the order in which a reader inserts
-    /// them into these bytes.
+    /// them into the bytes of `own`.
     pub cuts: Vec<Cut>,
     /// The leaf page of the entry, and the entry's number in it.
     pub leaf: usize,

@@ -27,9 +27,9 @@ use crate::scene_sound::{Scene, is_scene};
 /// finger.
 ///
 /// The profile of an actuator describes which part of the spectrum the actuator can reproduce. The
-/// command prints the difference between the file and the asset. To measure this difference, the
-/// command reads the written file again, simulates how the actuator plays the file, and compares
-/// the result with the asset's own samples. The command also prints the licence and the author that
+/// command prints how much the spectrum and the level change by the export. To measure this, it
+/// reads the written file again, simulates how the actuator plays the file, and compares the result
+/// with the samples of the texture. The command also prints the licence and the author that
 /// the written file states.
 #[derive(Args)]
 pub(crate) struct Export {

@@ -23,8 +23,8 @@ pub struct Similar {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duplicate {
     pub entry: Entry,
-    /// Name of the earlier texture in the library whose spectrum is most similar to the spectrum of
-    /// this texture.
+    /// Name of the most similar texture among those that come before `entry` in the library, have
+    /// the same quantity and match the query.
     pub of: String,
     /// RMS difference of the levels of both spectra, decibels.
     pub distance_db: f64,

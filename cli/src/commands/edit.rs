@@ -1,10 +1,10 @@
-//! Edits metadata and extensions, and writes the asset again. Refuses an asset if this version
+//! Edits metadata, extensions and the fluctuation, and writes the asset again. Refuses an asset if this version
 //! would lose a part of it when writing, such as an entry that the manifest does not name.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::settings::Metadata;
+use htex_author::settings::{GivenFluctuation, Metadata};
 use htex_author::{AuthorError, Coding, edit};
 use htex_base::files::AtFile;
 use serde_json::Value;
@@ -18,11 +18,11 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata
 ///
-/// The command changes only the metadata and extensions that you give. To remove an entry, give an
-/// empty text, e.g. --author "". Only the name cannot be removed. The flag --tag replaces all tags
-/// of the asset. Parameters, recorded spectra and embedded models with their signatures stay the
-/// same, byte for byte. The flag --storage changes the bytes of the parameters, but not their
-/// values.
+/// The command changes only the metadata, extensions and fluctuation that you give. To remove an
+/// entry, give an empty text, e.g. --author "". Only the name cannot be removed. The flag --tag
+/// replaces all tags of the asset. Parameters, recorded spectra and embedded models with their
+/// signatures stay the same, byte for byte. The flag --storage changes the bytes of the parameters,
+/// but not their values.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
@@ -45,6 +45,12 @@ pub(crate) struct Edit {
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension: Vec<String>,
 
+    /// Set how strongly the texture becomes stronger and weaker in time: standard deviations at 0.5
+    /// to 8 Hz and at 8 to 32 Hz, decibels, each from 0 to 7.97, e.g. 3,1.5. The value 0,0 removes
+    /// the fluctuation
+    #[arg(long, value_name = "SLOW,FAST", allow_hyphen_values = true)]
+    fluctuation: Option<GivenFluctuation>,
+
     /// Make the asset a coded asset, or make a coded asset plain again. A coded asset plays the
     /// same texture and has fewer bytes, but readers of version 1.0 of the format refuse it.
     /// `auto`: code it only with more than eight conditions, and only if the file becomes smaller
@@ -65,7 +71,9 @@ impl Edit {
             )));
         }
         let metadata = std::mem::take(&mut self.metadata);
-        if metadata.is_empty() && self.extension.is_empty() && self.storage.is_none() {
+        let changes_more =
+            !self.extension.is_empty() || self.fluctuation.is_some() || self.storage.is_some();
+        if metadata.is_empty() && !changes_more {
             return Err(Failure::usage(
                 "nothing to change: give at least one of the metadata, such as --author",
             ));
@@ -96,6 +104,9 @@ impl Edit {
         let mut asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;
         let is_set = asset.manifest.set_extensions(extensions);
         is_set.map_err(|error| Failure::Usage(format!("--extension: {error}")))?;
+        if let Some(fluctuation) = self.fluctuation {
+            fluctuation.apply(&mut asset.manifest);
+        }
         if let Some(coding) = self.storage {
             asset = coding.of(asset);
         }

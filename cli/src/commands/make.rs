@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::Exploration;
 use htex_author::by_hand::{ByHand, make};
-use htex_author::settings::Metadata;
+use htex_author::settings::{GivenFluctuation, Metadata};
 use htex_format::{Condition, Quantity, UnknownName};
 
 use crate::assets::{check_metadata, write_and_show};
@@ -41,6 +41,11 @@ pub(crate) struct Make {
     /// Physical quantity of the samples
     #[arg(long, default_value = "lateral_force", value_parser = quantity)]
     quantity: Quantity,
+
+    /// How strongly the texture becomes stronger and weaker in time: standard deviations at 0.5 to
+    /// 8 Hz and at 8 to 32 Hz, decibels, each from 0 to 7.97, e.g. 3,1.5 [default: 0,0]
+    #[arg(long, value_name = "SLOW,FAST", allow_hyphen_values = true)]
+    fluctuation: Option<GivenFluctuation>,
 
     /// The asset to write
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
@@ -88,6 +93,9 @@ impl Make {
         }
         let mut asset = make(model, &texture).map_err(Failure::usage)?;
         self.metadata.apply(&mut asset.manifest);
+        if let Some(fluctuation) = self.fluctuation {
+            fluctuation.apply(&mut asset.manifest);
+        }
         write_and_show(&self.output, &asset, self.json)
     }
 }

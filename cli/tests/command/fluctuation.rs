@@ -66,6 +66,58 @@ fn a_fit_states_the_fluctuation_and_a_voice_plays_it_when_asked() {
     assert!(bake.error().contains("fluctuation in time"), "{}", bake.error());
 }
 
+/// A user sets the fluctuation of a texture that is made or edited, and removes it.
+#[test]
+fn a_user_sets_and_removes_the_fluctuation() {
+    let place = Place::new();
+    let stated = |file: &str| Asset::open(&place.path(file)).unwrap().manifest.fluctuation;
+    let make = |more: &[&str]| {
+        let make = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02"];
+        place.run(&[&make[..], &["-o", "hum.htex"], more].concat())
+    };
+    let bytes = || std::fs::read(place.path("hum.htex")).unwrap();
+    assert_eq!(make(&["--fluctuation", "0,0"]).code(), 0);
+    let steady = bytes();
+    assert_eq!(make(&[]).code(), 0);
+    assert!(bytes() == steady);
+    assert_eq!(stated("hum.htex"), None);
+    let made = make(&["--fluctuation", "3,1.52"]);
+    assert!(made.text().contains("fluctuation in time: 3.00 dB"), "{}", made.text());
+    assert_eq!(stated("hum.htex"), Fluctuation::from_db([3.0, 1.52]));
+    assert_eq!(place.run(&["validate", "hum.htex"]).code(), 0);
+
+    let edit = |value: &str| {
+        let edit = ["edit", "hum.htex", "--fluctuation", value, "-o", "edited.htex"];
+        let run = place.run(&edit);
+        (run.code(), run.error())
+    };
+    for (value, strength_db) in
+        [("0, 2", [0.0, 2.0]), ("7.97,7.97", [255.0 / 32.0; 2]), ("0.5,0", [0.5, 0.0])]
+    {
+        assert_eq!(edit(value).0, 0);
+        assert_eq!(stated("edited.htex").unwrap().decibels(), strength_db, "{value}");
+    }
+    assert_eq!(edit("0,0").0, 0);
+    assert!(std::fs::read(place.path("edited.htex")).unwrap() == steady);
+    for (value, words) in [
+        ("3", "two numbers"),
+        ("3,x", "two numbers"),
+        ("3,1,2", "two numbers"),
+        ("", "two numbers"),
+        ("8,0", "8 dB is not"),
+        ("7.98,0", "from 0 to 7.97"),
+        ("-1,0", "-1 dB is not"),
+        ("0,nan", "from 0 to 7.97"),
+        ("inf,0", "from 0 to 7.97"),
+    ] {
+        let (code, error) = edit(value);
+        assert!(code == 2 && error.contains("--fluctuation") && error.contains(words), "{error}");
+        assert_eq!(make(&["--fluctuation", value]).code(), 2);
+    }
+    let nothing = place.run(&["edit", "hum.htex"]);
+    assert!(nothing.code() == 2 && nothing.error().contains("nothing to change"));
+}
+
 /// An edited texture keeps its fluctuation, and a mixture has the weighted mean.
 #[test]
 fn edits_keep_the_fluctuation_and_mixtures_have_its_mean() {

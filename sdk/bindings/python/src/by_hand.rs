@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use htex::format::{Quantity, UnknownName};
 use htex_author::by_hand::{self, ByHand, MixedAsset};
 use htex_author::edit as edited;
-use htex_author::settings::Metadata;
+use htex_author::settings::{GivenFluctuation, Metadata};
 use htex_format::Condition;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
@@ -29,6 +29,8 @@ pub(crate) struct ByHandTexture {
     level_rms: f64,
     at: Pair,
     quantity: String,
+    /// The strengths of the slow and the fast fluctuation, decibels.
+    fluctuation: Option<(f64, f64)>,
     /// JSON.
     metadata: PyBackedStr,
     plugins: Vec<PathBuf>,
@@ -67,22 +69,27 @@ pub(crate) fn mix(
     })
 }
 
-/// Returns a texture with other metadata.
+/// Returns a texture with other metadata or another fluctuation.
 #[pyfunction]
 pub(crate) fn edit(
     py: Python<'_>,
     texture: PyRef<'_, Texture>,
     metadata: &str,
+    fluctuation: Option<(f64, f64)>,
 ) -> PyResult<Texture> {
     let texture = &*texture;
     py.detach(|| {
         let metadata = checked(metadata)?;
-        if metadata.is_empty() {
+        let fluctuation = given(fluctuation)?;
+        if metadata.is_empty() && fluctuation.is_none() {
             return Err(option(
                 "nothing to change: give at least one of the metadata, such as author",
             ));
         }
-        let asset = edited(&texture.bytes()?, &metadata).map_err(raised)?;
+        let mut asset = edited(&texture.bytes()?, &metadata).map_err(raised)?;
+        if let Some(fluctuation) = fluctuation {
+            fluctuation.apply(&mut asset.manifest);
+        }
         texture.made_of(&asset, &[])
     })
 }
@@ -90,6 +97,7 @@ pub(crate) fn edit(
 impl ByHandTexture {
     fn texture(self) -> PyResult<Texture> {
         let metadata = checked(&self.metadata)?;
+        let fluctuation = given(self.fluctuation)?;
         let registry = registry(&self.plugins, self.installed)?;
         let model = registry.find(&self.model).map_err(raised)?;
         let quantity: Quantity = self.quantity.parse().map_err(|error: UnknownName| {
@@ -103,6 +111,9 @@ impl ByHandTexture {
         texture.values = self.parameters;
         let mut asset = by_hand::make(model, &texture).map_err(raised)?;
         metadata.apply(&mut asset.manifest);
+        if let Some(fluctuation) = fluctuation {
+            fluctuation.apply(&mut asset.manifest);
+        }
         Texture::from_asset(&asset, self.plugins, self.installed)
     }
 }
@@ -113,6 +124,12 @@ fn checked(metadata: &str) -> PyResult<Metadata> {
     let checked = metadata.check();
     checked.map_err(|error| option(error.to_string()))?;
     Ok(metadata)
+}
+
+/// Checks the strengths of a fluctuation.
+fn given(strength_db: Option<(f64, f64)>) -> PyResult<Option<GivenFluctuation>> {
+    let given = strength_db.map(|(slow, fast)| GivenFluctuation::new([slow, fast]));
+    given.transpose().map_err(|error| option(format!("fluctuation: {error}")))
 }
 
 fn hash(texture: &Texture) -> PyResult<String> {

@@ -29,6 +29,18 @@ def test_textures_by_hand_are_those_of_the_command(place: pathlib.Path, tmp_path
     assert mixed.level() == pytest.approx(0.025)
 
     cloth = htex.open(place / "cloth.htex")
+    swelling = htex.make("sbeta", {"alpha": 2.0, "beta": 5}, 0.02, fluctuation=(3, 1.5), name="swell")
+    command(*"make --model sbeta --set alpha=2 beta=5 --level 0.02 --fluctuation 3,1.5 --name swell -o swell.htex".split(), cwd=tmp_path)
+    assert swelling.to_bytes() == (tmp_path / "swell.htex").read_bytes()
+    assert swelling.manifest["fluctuation"] == {"slow": 96, "fast": 48}
+    steady = htex.edit(swelling, fluctuation=(0, 0))
+    command("edit", "swell.htex", "--fluctuation", "0,0", "-o", "steady.htex", cwd=tmp_path)
+    assert steady.to_bytes() == (tmp_path / "steady.htex").read_bytes()
+    assert "fluctuation" not in steady.manifest
+    for wrong in [(8, 0), (-1, 0), (0, float("nan"))]:
+        with pytest.raises(htex.OptionError, match="fluctuation: .* from 0 to 7.97"):
+            htex.edit(swelling, fluctuation=wrong)
+
     edited = htex.edit(cloth, author="A. Uthor", tags=["a", "b"])
     command("edit", place / "cloth.htex", "--author", "A. Uthor", "--tag", "a,b", "-o", "edited.htex", cwd=tmp_path)
     assert edited.to_bytes() == (tmp_path / "edited.htex").read_bytes()

@@ -22,6 +22,7 @@ def make(
     *,
     at: Condition | tuple[float | None, float | None] = (None, None),
     quantity: Quantity = "lateral_force",
+    fluctuation: tuple[float, float] | None = None,
     plugins: Sequence[str | os.PathLike[str]] = (),
     installed: bool = False,
     **metadata: Unpack[Metadata],
@@ -33,7 +34,9 @@ def make(
     ``parameters`` holds the model's parameters by name; ``htex.models()`` lists them with units and
     ranges. If a parameter is a list, give all its values. ``level_rms`` is the RMS of the texture
     in the unit of ``quantity``, which is newtons for a force. ``at`` is the speed (mm/s) and the
-    force (N) for which these parameters hold.
+    force (N) for which these parameters hold. ``fluctuation`` says how strongly the texture becomes
+    stronger and weaker in time: the standard deviations at 0.5 to 8 Hz and at 8 to 32 Hz, decibels,
+    each from 0 to 7.97.
     """
     (given,) = split("make", metadata, Metadata)
     values = {name: _values(value) for name, value in parameters.items()}
@@ -44,6 +47,7 @@ def make(
             "level_rms": level_rms,
             "at": pair(at),
             "quantity": quantity,
+            "fluctuation": fluctuation,
             "metadata": as_json(given),
             "plugins": list(plugins),
             "installed": installed,
@@ -65,14 +69,21 @@ def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Me
 
 
 @keywords(Metadata)
-def edit(texture: _htex.Texture, **metadata: Unpack[Metadata]) -> _htex.Texture:
+def edit(
+    texture: _htex.Texture,
+    *,
+    fluctuation: tuple[float, float] | None = None,
+    **metadata: Unpack[Metadata],
+) -> _htex.Texture:
     """Return the texture with other metadata, without fitting it again, as ``htex edit`` does.
 
     Metadata that you do not give stays as it is. An empty text removes an entry. ``tags`` replaces
-    all tags.
+    all tags. ``fluctuation`` sets how strongly the texture becomes stronger and weaker in time: the
+    standard deviations at 0.5 to 8 Hz and at 8 to 32 Hz, decibels, each from 0 to 7.97. ``(0, 0)``
+    removes the fluctuation.
     """
     (given,) = split("edit", metadata, Metadata)
-    return _htex.edit(texture, as_json(given))
+    return _htex.edit(texture, as_json(given), fluctuation)
 
 
 def _values(value: float | Sequence[float]) -> list[float]:

@@ -7,6 +7,7 @@
 #[cfg(feature = "clap")]
 mod choices;
 mod fit;
+mod fluctuation;
 mod law;
 mod metadata;
 mod one_or_more;
@@ -15,6 +16,7 @@ mod reading;
 mod setting;
 
 pub use fit::{FitSettings, OptionSetting, named_models};
+pub use fluctuation::GivenFluctuation;
 pub use law::GivenLaw;
 pub use metadata::Metadata;
 pub use one_or_more::{OneOrMore, one_or_more};

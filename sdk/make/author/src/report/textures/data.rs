@@ -63,6 +63,8 @@ pub struct Texture {
     /// Text that says whether a finger or a tool slid over the texture, and how frequencies and
     /// level follow motions that were not recorded. May be empty.
     pub law: String,
+    /// Text that says how strongly the texture becomes stronger and weaker in time. May be empty.
+    pub fluctuation: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
     /// Size of the asset's file, bytes.

@@ -10,8 +10,8 @@ use htex_author::{FeltError, GridReport, REPEATABILITY_BOUND};
 use htex_base::files::AtFile;
 use htex_base::finding::plain;
 use htex_format::{
-    Asset, AtCondition, Condition, HeldOut, How, Ingredient, Law, LeftOut, Limits, Made, Manifest,
-    Measure, StoredField,
+    Asset, AtCondition, Condition, Fluctuation, HeldOut, How, Ingredient, Law, LeftOut, Limits,
+    Made, Manifest, Measure, StoredField,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -203,10 +203,8 @@ impl AssetSummary {
         }
         writeln!(f, "contact: {}", contact.name())?;
         writeln!(f, "law outside the recorded motions: {}", self.law)?;
-        match self.manifest.fluctuation {
-            Some(fluctuation) => writeln!(f, "fluctuation in time: {fluctuation}"),
-            None => Ok(()),
-        }
+        let mut lines = self.manifest.fluctuation.iter().flat_map(fluctuation_lines);
+        lines.try_for_each(|line| writeln!(f, "{line}"))
     }
 
     /// Lists the level, the measures and the parameters of each representation at each condition.
@@ -289,6 +287,18 @@ fn parameter_text(name: &str, value: &Value) -> String {
 fn short_number(x: f64) -> String {
     let text = format!("{x:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Describes a texture's fluctuation, and how well it predicts the rest of the recordings, as far as
+/// this is known.
+pub(crate) fn fluctuation_lines(fluctuation: &Fluctuation) -> Vec<String> {
+    let Fluctuation { held_out_error_db, halves_error_db, .. } = fluctuation;
+    let held_out = held_out_error_db.map(|db| format!("{db:.2} dB held out"));
+    let halves =
+        halves_error_db.map(|db| format!("{db:.2} dB between the halves of the recordings"));
+    let errors = Vec::from_iter(held_out.into_iter().chain(halves)).join(", ");
+    let errors = (!errors.is_empty()).then(|| format!("fluctuation error: {errors}"));
+    [format!("fluctuation in time: {fluctuation}")].into_iter().chain(errors).collect()
 }
 
 /// Describes how much a second recording differs, from the repeatability of the first one.

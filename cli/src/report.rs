@@ -5,7 +5,7 @@ use htex_author::{FeltShare, FittedAsset};
 use htex_format::{By, MeasureKind, Quality};
 use htex_host::Registry;
 
-use crate::assets::{AssetSummary, motion_text, short_name};
+use crate::assets::{AssetSummary, fluctuation_lines, motion_text, short_name};
 use crate::columns::Column;
 use crate::failure::Result;
 
@@ -59,6 +59,10 @@ impl ReportSource<'_> {
                 manifest.contact.name(),
                 manifest.law()
             ),
+            fluctuation: manifest
+                .fluctuation
+                .map(|fluctuation| fluctuation_lines(&fluctuation).join("; "))
+                .unwrap_or_default(),
             recording_bytes: self.recording_bytes,
             asset_bytes: self.summary.bytes,
             repeatability_rms_db: known.repeatability_rms_db,

@@ -67,7 +67,8 @@ fn files() -> Files {
     }
     place.write("unmeasured.htex", unmeasured.to_bytes().unwrap());
     let mut fluctuating = three.clone();
-    fluctuating.manifest.fluctuation = Some(Fluctuation { slow: 112, fast: 71 });
+    fluctuating.manifest.fluctuation =
+        Some(Fluctuation { slow: 112, fast: 71, ..Fluctuation::default() });
     place.write("fluctuating.htex", fluctuating.to_bytes().unwrap());
     let mut silent = three;
     let first = silent.manifest.representations[0].at[0].condition;

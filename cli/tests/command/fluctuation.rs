@@ -8,6 +8,10 @@ use htex_format::{Asset, Fluctuation};
 const RATE_HZ: u32 = 4_000;
 const STRENGTH_DB: [f64; 2] = [4.0, 3.0];
 
+fn steps(slow: u8, fast: u8) -> Fluctuation {
+    Fluctuation { slow, fast, ..Fluctuation::default() }
+}
+
 /// 30 s of white noise whose level fluctuates.
 fn recorded(place: &Place) {
     let spec = hound::WavSpec {
@@ -29,6 +33,7 @@ fn a_fit_states_the_fluctuation_and_a_voice_plays_it_when_asked() {
     let place = Place::new();
     recorded(&place);
     let fit = ["fit", "rec.wav", "--segments", "windows", "--model", "bands", "-o", "new.htex"];
+    let fit = [&fit[..], &["--report", "page.html"]].concat();
     let run = place.run(&fit);
     assert_eq!(run.code(), 0, "{}", run.error());
     let info = place.json(&["info", "new.htex", "--json"]);
@@ -39,7 +44,17 @@ fn a_fit_states_the_fluctuation_and_a_voice_plays_it_when_asked() {
         assert!((found / wanted - 1.0).abs() < 0.2, "{stored}");
     }
     let line = format!("fluctuation in time: {stored}");
-    assert!(place.run(&["info", "new.htex"]).text().contains(&line));
+    let text = place.run(&["info", "new.htex"]).text();
+    assert!(text.contains(&line), "{text}");
+    let [held_out, halves] = [stored.held_out_error_db, stored.halves_error_db].map(Option::unwrap);
+    // Both halves and the parts of the rendering last 15 s and fluctuate alike.
+    assert!((0.1..5.0).contains(&held_out) && (0.1..5.0).contains(&halves), "{stored:?}");
+    let line = format!(
+        "fluctuation error: {held_out:.2} dB held out, {halves:.2} dB between the halves of the recordings"
+    );
+    assert!(text.contains(&line), "{text}");
+    let page = std::fs::read_to_string(place.path("page.html")).unwrap();
+    assert!(page.contains(&line), "{page}");
     assert_eq!(place.run(&["validate", "new.htex"]).code(), 0);
 
     let mut steady = Asset::open(&place.path("new.htex")).unwrap();
@@ -128,24 +143,29 @@ fn edits_keep_the_fluctuation_and_mixtures_have_its_mean() {
     let mut asset = Asset::open(&place.path("one.htex")).unwrap();
     asset.manifest.fluctuation = None;
     place.write("steady.htex", asset.to_bytes().unwrap());
-    asset.manifest.fluctuation = Some(Fluctuation { slow: 100, fast: 40 });
+    asset.manifest.fluctuation = Some(Fluctuation {
+        held_out_error_db: Some(3.5),
+        halves_error_db: Some(3.0),
+        ..steps(100, 40)
+    });
     place.write("moving.htex", asset.to_bytes().unwrap());
     let stated = |file: &str| Asset::open(&place.path(file)).unwrap().manifest.fluctuation;
 
     let edit = ["edit", "moving.htex", "--name", "Other", "-o", "edited.htex"];
     assert_eq!(place.run(&edit).code(), 0);
-    assert_eq!(stated("edited.htex"), Some(Fluctuation { slow: 100, fast: 40 }));
+    assert_eq!(stated("edited.htex"), stated("moving.htex"));
+    assert!(stated("edited.htex").unwrap().held_out_error_db.is_some());
+    let edit = ["edit", "edited.htex", "--fluctuation", "3.125,1.25"];
+    assert_eq!(place.run(&edit).code(), 0);
+    assert_eq!(stated("edited.htex"), Some(steps(100, 40)));
     let mix = |a: &str, b: &str| {
         let mix = ["mix", a, b, "--weight", "0.75", "-o", "mixed.htex"];
         assert_eq!(place.run(&mix).code(), 0);
         stated("mixed.htex")
     };
-    let quarter = Some(Fluctuation { slow: 25, fast: 10 });
-    assert!(
-        [quarter, Some(Fluctuation { slow: 75, fast: 30 })]
-            .contains(&mix("moving.htex", "steady.htex"))
-    );
+    let quarter = Some(steps(25, 10));
+    assert!([quarter, Some(steps(75, 30))].contains(&mix("moving.htex", "steady.htex")));
     assert_ne!(mix("moving.htex", "steady.htex"), mix("steady.htex", "moving.htex"));
     assert_eq!(mix("steady.htex", "steady.htex"), None);
-    assert_eq!(mix("moving.htex", "moving.htex"), stated("moving.htex"));
+    assert_eq!(mix("moving.htex", "moving.htex"), Some(steps(100, 40)));
 }

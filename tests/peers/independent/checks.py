@@ -35,6 +35,7 @@ def check_manifest(manifest: dict, models: Models, findings: Findings) -> None:
     check_provenance(manifest.get("provenance", {}), findings)
     check_conditions(manifest, findings)
     check_law(manifest.get("law"), findings)
+    check_fluctuation(manifest.get("fluctuation", {}), findings)
     check_representations(manifest, findings)
     check_plugins(manifest, findings)
     check_extensions(manifest, findings)
@@ -110,6 +111,12 @@ def check_law(law: dict | None, findings: Findings) -> None:
         exponent = law[name]
         if not -4 <= exponent["exponent"] <= 4 or exponent.get("standard_error", 0.0) < 0:
             findings.add("LAW_INVALID", f"/law/{name}")
+
+
+def check_fluctuation(fluctuation: dict, findings: Findings) -> None:
+    for key in ("held_out_error_db", "halves_error_db"):
+        if not 0 <= fluctuation.get(key, 0.0) <= 100:
+            findings.add("FLUCTUATION_INVALID", f"/fluctuation/{key}")
 
 
 def check_representations(manifest: dict, findings: Findings) -> None:

@@ -124,7 +124,14 @@ MANIFEST = t.Object(
             )
         ),
         "law": t.Object({"frequency_speed*": EXPONENT, "level_speed*": EXPONENT, "level_force*": EXPONENT}),
-        "fluctuation": t.Object({"slow*": t.Integer(0, 255), "fast*": t.Integer(0, 255)}),
+        "fluctuation": t.Object(
+            {
+                "slow*": t.Integer(0, 255),
+                "fast*": t.Integer(0, 255),
+                "held_out_error_db": t.Number(),
+                "halves_error_db": t.Number(),
+            }
+        ),
         "representations*": t.List(
             t.Object(
                 {

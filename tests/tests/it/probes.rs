@@ -195,6 +195,8 @@ fn manifest() -> Value {
     ]);
     let error = |estimate: f64| json!({ "exponent": 0.5, "source": "measured", "estimate": estimate, "standard_error": 0.1 });
     manifest["law"] = json!({ "frequency_speed": error(0.5), "level_speed": error(0.6), "level_force": error(0.7) });
+    manifest["fluctuation"] =
+        json!({ "slow": 96, "fast": 48, "held_out_error_db": 4.5, "halves_error_db": 3.5 });
     let keys = |name: &str| -> Map<String, Value> {
         let schema = schema("manifest-1");
         let all = schema["$defs"][name]["properties"].as_object().unwrap();

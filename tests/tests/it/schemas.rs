@@ -37,6 +37,8 @@ const REFUSED: &[&str] = &[
     "field_duplicate",
     "field_name_empty",
     "findings_truncated",
+    "fluctuation_invalid",
+    "fluctuation_invalid_each",
     "json_too_deep",
     "json_type",
     "json_type_array",

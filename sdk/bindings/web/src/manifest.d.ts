@@ -66,9 +66,11 @@ export interface Manifest {
   law?: Law;
   /**
    * How strongly the texture fluctuates in time: standard deviations at 0.5 to 8 and at 8 to 32 Hz,
-   * in steps of 1/32 dB (0 to 255).
+   * in steps of 1/32 dB (0 to 255). The errors, in decibels, are RMS differences of modulation
+   * spectra: of the played fluctuation of the first halves of the recordings to the second halves,
+   * and between the halves.
    */
-  fluctuation?: { slow: number; fast: number };
+  fluctuation?: { slow: number; fast: number; held_out_error_db?: number; halves_error_db?: number };
   representations: Representation[];
   reference?: Record<string, unknown>;
   /** Embedded models. */

@@ -9,10 +9,10 @@ use crate::error::MetadataError;
 use crate::license::check_license;
 use htex_model::Band;
 
-use crate::APPEARANCE;
 use crate::law::{Law, MOST_EXPONENT};
 use crate::manifest::{CODED, Condition, HATT, Manifest};
 use crate::rules as rule;
+use crate::{APPEARANCE, Fluctuation};
 use htex_base::finding::Findings;
 use htex_base::finding::escape;
 
@@ -39,6 +39,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_made(manifest, findings);
     let are_sound = check_conditions(&manifest.conditions, findings);
     check_law(manifest, findings);
+    check_fluctuation(manifest, findings);
     check_representations(manifest, are_sound, findings);
     check_plugins(manifest, findings);
     check_extensions(manifest, findings);
@@ -158,6 +159,18 @@ fn check_law(manifest: &Manifest, findings: &mut Findings) {
             exponent.exponent
         );
         findings.add(rule::LAW_INVALID, format!("/law/{key}"), message);
+    }
+}
+
+fn check_fluctuation(manifest: &Manifest, findings: &mut Findings) {
+    let most = Fluctuation::MOST_ERROR_DB;
+    let errors = manifest.fluctuation.iter().flat_map(Fluctuation::errors_db);
+    for (key, error_db) in errors {
+        if let Some(db) = error_db.filter(|db| !(0.0..=most).contains(db)) {
+            let message =
+                format!("{db} is not an error of 0 to {most} dB; remove {key} if it is not known");
+            findings.add(rule::FLUCTUATION_INVALID, format!("/fluctuation/{key}"), message);
+        }
     }
 }
 

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(fluctuation.map(|f| (f.slow, f.fast)), Some((96, 49)));
 /// assert_eq!(Fluctuation::from_db([0.0, 0.01]), None);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Fluctuation {
     /// Standard deviation of the part at 0.5 to 8 Hz, in steps of 1/32 dB.
     #[schemars(range(min = 0, max = 255))]
@@ -26,23 +26,42 @@ pub struct Fluctuation {
     /// Standard deviation of the part at 8 to 32 Hz, in steps of 1/32 dB.
     #[schemars(range(min = 0, max = 255))]
     pub fast: u8,
+    /// Held-out error, decibels: the fluctuation was estimated from the first halves of the
+    /// recordings and played. The error is the RMS difference to the second halves, over their
+    /// modulation spectra.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 100))]
+    pub held_out_error_db: Option<f64>,
+    /// Difference between the first and the second halves of the recordings, decibels: the same RMS
+    /// over modulation spectra. It says how much a second recording differs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 100))]
+    pub halves_error_db: Option<f64>,
 }
 
 impl Fluctuation {
     /// Size of a step, decibels.
     pub const STEP_DB: f64 = 1.0 / 32.0;
 
-    /// Rounds two standard deviations in decibels to numbers of steps, each at most 255. `None` if
-    /// both become 0.
+    /// Largest error that an asset may state, decibels.
+    pub const MOST_ERROR_DB: f64 = 100.0;
+
+    /// Rounds two standard deviations in decibels to numbers of steps, each at most 255. The errors
+    /// are unknown. `None` if both standard deviations become 0.
     pub fn from_db(strength_db: [f64; 2]) -> Option<Self> {
         // The conversion limits what is out of range, and turns NaN into 0.
         let [slow, fast] = strength_db.map(|db| (db / Self::STEP_DB).round() as u8);
-        (slow > 0 || fast > 0).then_some(Self { slow, fast })
+        (slow > 0 || fast > 0).then_some(Self { slow, fast, ..Self::default() })
     }
 
     /// Returns the standard deviations of the slow and the fast part, decibels: 0 to 7.97.
     pub fn decibels(self) -> [f64; 2] {
         [self.slow, self.fast].map(|steps| f64::from(steps) * Self::STEP_DB)
+    }
+
+    /// Returns the errors with their keys, in the order of the manifest.
+    pub(crate) fn errors_db(&self) -> [(&'static str, Option<f64>); 2] {
+        [("held_out_error_db", self.held_out_error_db), ("halves_error_db", self.halves_error_db)]
     }
 
     /// Returns whether the texture is equally strong at all times.

@@ -3,7 +3,7 @@
 use crate::manifest::AtCondition;
 use crate::{Manifest, Measure, MeasureKind, Measures};
 
-/// Decimals of measures of agreement and of repeatability.
+/// Decimals of measures of agreement, of repeatability and of errors of the fluctuation.
 const DECIMALS: usize = 4;
 /// Decimals of these numbers in a coded asset, where they would take most of the bytes. A hundredth
 /// of a decibel is a tenth of what measures of rendered samples vary by.
@@ -11,10 +11,10 @@ const DECIMALS_CODED: usize = 2;
 
 impl Manifest {
     /// Returns the manifest as a writer stores it: with the lowest version that defines its keys
-    /// ([`Self::lowest_version`]), and with rounded numbers. Measures of agreement and
-    /// repeatability are rounded to four decimals. In a coded asset, values in decibels are rounded
-    /// to two decimals. Levels are rounded to nine significant digits. Applying this twice changes
-    /// nothing.
+    /// ([`Self::lowest_version`]), and with rounded numbers. Measures of agreement, repeatability
+    /// and errors of the fluctuation are rounded to four decimals. In a coded asset, values in
+    /// decibels are rounded to two decimals. Levels are rounded to nine significant digits. Applying
+    /// this twice changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         rounded.htex = self.lowest_version();
@@ -22,6 +22,10 @@ impl Manifest {
         for condition in &mut rounded.conditions {
             round(condition.repeatability_rms_db.iter_mut(), decimals);
             round(condition.repeatability_third_octave_rms_db.iter_mut(), decimals);
+        }
+        if let Some(fluctuation) = &mut rounded.fluctuation {
+            round(fluctuation.held_out_error_db.iter_mut(), decimals);
+            round(fluctuation.halves_error_db.iter_mut(), decimals);
         }
         for representation in &mut rounded.representations {
             representation.at.iter_mut().for_each(|at| round_at(at, decimals));

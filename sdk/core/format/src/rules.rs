@@ -196,6 +196,10 @@ htex_base::finding::rule_table! {
         "An exponent of the law is out of range.",
         "Exponents are from -4 to 4, and standard errors are not negative.",
         "Correct it, or remove `law`: then what is usual for the contact and the quantity applies.";
+    FLUCTUATION_INVALID Error [CONDITIONS]:
+        "An error of the fluctuation is out of range.",
+        "Errors are from 0 to 100 dB.",
+        "Correct it, or remove it when it is not known.";
     REPRESENTATIONS_EMPTY Error [REPRESENTATIONS]:
         "There is no representation.",
         "Without it there is nothing to play.",

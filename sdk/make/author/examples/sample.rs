@@ -62,6 +62,8 @@ fn texture(index: usize) -> Texture {
         condition: "80 mm/s, 0.40 N".to_owned(),
         law: "contact: finger; outside the recorded motions: frequency over speed ^1.00 (assumed)"
             .to_owned(),
+        fluctuation: "fluctuation in time: 3.00 dB at 0.5 to 8 Hz and 1.53 dB at 8 to 32 Hz"
+            .to_owned(),
         recording_bytes: 1_600_044 + 40_000 * index as u64,
         asset_bytes: 2_810 + 7 * index as u64,
         repeatability_rms_db: (index != 3).then_some(1.1 + 0.2 * index as f64),

@@ -13,7 +13,7 @@ use htex_host::LoadedModel;
 use crate::conditions::{ConditionSpectra, RecordingFinding};
 use crate::felt::FeltError;
 use crate::fit::{FittedModels, fit_models};
-use crate::fluctuation::fluctuation_of_texture;
+use crate::fluctuation::{SteadyVoice, fluctuation_of_texture, with_held_out_error};
 use crate::grid::{GridReport, GridSpectra};
 use crate::request::AssetRequest;
 use crate::take::{SegmentedTake, Take, segment_take};
@@ -88,9 +88,34 @@ pub fn fit_asset_watched(
         begins,
     )?;
     let fluctuation = fluctuation_of_texture(takes, spectrum.segments, &conditions.law);
+    let fluctuation = match fluctuation.zip(noise(request, &conditions, &fitted)) {
+        Some((fluctuation, voice)) => {
+            let (segments, law) = (spectrum.segments, &conditions.law);
+            Some(with_held_out_error(fluctuation, takes, segments, law, voice)?)
+        }
+        None => fluctuation,
+    };
     let mut fitted = assemble(request, conditions, grid, fitted);
     fitted.asset.manifest.fluctuation = fluctuation;
     Ok(fitted)
+}
+
+/// Returns the voice of the first fitted model that plays noise, at the first recorded condition.
+fn noise<'a>(
+    request: &'a AssetRequest,
+    conditions: &ConditionSpectra,
+    fitted: &'a FittedModels,
+) -> Option<SteadyVoice<'a>> {
+    let is_recorded = |condition: usize| conditions.all[condition].condition.is_recorded();
+    fitted.models.iter().find_map(|one| {
+        let representation = &one.representation;
+        let mut models = request.models.iter().map(|choice| &choice.model);
+        let model = models.find(|model| model.id() == representation.model)?;
+        let at = representation.at.iter().position(|at| is_recorded(at.condition))?;
+        let band = conditions.all.first()?.spectrum.band;
+        let voice = SteadyVoice { model, parameters: one.parameters.get(at)?, band };
+        (!model.has_lines()).then_some(voice)
+    })
 }
 
 fn assemble(

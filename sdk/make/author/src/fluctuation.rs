@@ -1,6 +1,10 @@
 //! How recordings and rendered textures fluctuate in time, and how much two fluctuations differ.
 
-use htex_dsp::fluctuation::{EXCESS_BANDS, Fluctuation, envelope_excess};
+use std::ops::Range;
+
+use htex_dsp::Band;
+use htex_dsp::fluctuation::{EXCESS_BANDS, Fluctuation, LEAST_S, envelope_excess};
+use htex_dsp::random_envelope::RandomEnvelope;
 use htex_format::Law;
 use htex_host::{LoadedModel, Stream};
 use schemars::JsonSchema;
@@ -23,6 +27,9 @@ pub fn fluctuation(recording: &Recording) -> Option<Fluctuation> {
     let axes: Vec<&[f64]> = recording.axes.iter().map(Vec::as_slice).collect();
     Fluctuation::new(&axes, recording.rate_hz)
 }
+
+/// A recording below this fraction of the rendering's sample rate has fewer third octaves.
+const LOW_RATE: f64 = 0.53;
 
 /// Half the length of the moving average of speed and force by which a recording's level is
 /// corrected, seconds. The law is about how the finger moves, not about how it trembles.
@@ -55,23 +62,30 @@ pub(crate) fn fluctuation_of_texture(
     segments: SegmentChoice,
     law: &Law,
 ) -> Option<htex_format::Fluctuation> {
+    let recordings = read_in_windows(takes, segments);
+    estimate(recordings.map(|recording| Corrected::new(recording, 0..recording.samples(), law)))
+}
+
+/// The recordings that are read in windows, and not as the middles of sweeps.
+fn read_in_windows(
+    takes: &[Take],
+    segments: SegmentChoice,
+) -> impl Iterator<Item = &Recording> + Clone {
+    let recordings = takes.iter().map(|take| &take.recording);
+    recordings.filter(move |recording| !choose_segments(recording, segments).from_sweeps)
+}
+
+/// Estimates one fluctuation from all parts together.
+fn estimate(parts: impl Iterator<Item = Corrected>) -> Option<htex_format::Fluctuation> {
     let mut bands = [Average::default(); EXCESS_BANDS];
-    for take in takes {
-        let recording = &take.recording;
-        if choose_segments(recording, segments).from_sweeps {
-            continue;
-        }
-        let correction = correction(recording, law);
-        let axes = recording.axes.iter().filter_map(|axis| {
-            let corrected = axis.iter().zip(&correction).map(|(x, factor)| x / factor);
-            envelope_excess(&corrected.collect::<Vec<_>>(), recording.rate_hz)
-        });
+    for part in parts {
+        let axes = part.axes.iter().filter_map(|axis| envelope_excess(axis, part.rate_hz));
         let axes: Vec<_> = axes.collect();
         for (band, average) in bands.iter_mut().enumerate() {
             let found: Vec<_> = axes.iter().filter_map(|bands| bands[band]).collect();
             let power: f64 = found.iter().map(|axis| axis.power).sum();
             for axis in found {
-                let weight = recording.duration_s() * axis.power / power;
+                let weight = part.duration_s() * axis.power / power;
                 average.add(weight, axis.excess, axis.error);
             }
         }
@@ -115,20 +129,146 @@ impl Average {
     }
 }
 
-/// The factor by which the law changes the level at each sample, relative to the mean motion. It is
-/// 1 where speed and force were not recorded.
-fn correction(recording: &Recording, law: &Law) -> Vec<f64> {
+/// A part of a recording, divided by the factor by which the law changes the level.
+struct Corrected {
+    axes: Vec<Vec<f64>>,
+    rate_hz: f64,
+}
+
+impl Corrected {
+    fn new(recording: &Recording, samples: Range<usize>, law: &Law) -> Self {
+        let correction = correction(recording, samples.clone(), law);
+        let axes = recording.axes.iter().map(|axis| {
+            let part = axis[samples.clone()].iter();
+            part.zip(&correction).map(|(x, factor)| x / factor).collect()
+        });
+        Self { axes: axes.collect(), rate_hz: recording.rate_hz }
+    }
+
+    fn samples(&self) -> usize {
+        self.axes.first().map_or(0, Vec::len)
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.samples() as f64 / self.rate_hz
+    }
+
+    fn fluctuation(&self) -> Option<Fluctuation> {
+        let axes: Vec<&[f64]> = self.axes.iter().map(Vec::as_slice).collect();
+        Fluctuation::new(&axes, self.rate_hz)
+    }
+}
+
+/// The factor by which the law changes the level at each of the samples, relative to their mean
+/// motion. It is 1 where speed and force were not recorded.
+fn correction(recording: &Recording, samples: Range<usize>, law: &Law) -> Vec<f64> {
     let half = (HALF_AVERAGE_S * recording.rate_hz) as usize;
     let ratios = |signal: &Option<Vec<f64>>| {
-        let sums = Sums::new(signal.iter().flatten().map(|x| x.abs()));
+        let part = signal.iter().flat_map(|signal| &signal[samples.clone()]);
+        let sums = Sums::new(part.map(|x| x.abs()));
         let mean = sums.mean(0, sums.samples());
-        (0..recording.samples()).map(move |at| {
+        (0..samples.len()).map(move |at| {
             let ratio = if mean > 0.0 { sums.mean_around(at, half) / mean } else { 1.0 };
             ratio.clamp(1.0 / MOST_RATIO, MOST_RATIO)
         })
     };
     let motion = ratios(&recording.speed_mm_s).zip(ratios(&recording.normal_n));
     motion.map(|(speed, force)| law.level_factor(speed, force)).collect()
+}
+
+/// The voice of a model with the parameters of one condition.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SteadyVoice<'a> {
+    pub(crate) model: &'a LoadedModel,
+    pub(crate) parameters: &'a [f64],
+    pub(crate) band: Band,
+}
+
+impl SteadyVoice<'_> {
+    /// Renders 20 s, multiplied by an envelope if a strength is given. Returns the samples, and
+    /// their sample rate in hertz.
+    fn render(self, strength_db: Option<[f64; 2]>) -> Result<(Vec<f64>, f64), AuthorError> {
+        let rate_hz = 4.0 * self.band.high_hz;
+        let lead = (LEAD_S * rate_hz) as usize;
+        let mut samples = vec![0.0f32; lead + (SECONDS * rate_hz) as usize];
+        let mut stream = Stream::new(self.model, self.parameters, self.band, rate_hz, SEED)?;
+        stream.render(&mut samples)?;
+        if let Some(strength_db) = strength_db {
+            RandomEnvelope::new(strength_db, rate_hz, SEED).apply(&mut samples);
+        }
+        Ok((samples[lead..].iter().map(|x| f64::from(*x)).collect(), rate_hz))
+    }
+}
+
+/// Measures how well the fluctuation of the first halves of recordings predicts the second halves.
+///
+/// The fluctuation is estimated from all first halves together, and a noise that fluctuates like
+/// this is rendered for 20 s. The noise is cut into parts as long as the second half, because the
+/// modulation spectrum of a short signal is less certain. `held_out_error_db` is the mean, over the
+/// parts, of the difference of the modulation spectra. `halves_error_db` is the difference between
+/// the two halves of the recording. Both are averaged over the recordings by their lengths.
+///
+/// Returns the fluctuation with these errors, if a recording of at least 6 s is read in windows.
+/// Only the fluctuation is held out: the model was fitted to the whole recordings. A modulation
+/// spectrum hardly depends on the spectrum, because every third octave is divided by its mean.
+///
+/// # Errors
+/// When the model cannot render.
+pub(crate) fn with_held_out_error(
+    fluctuation: htex_format::Fluctuation,
+    takes: &[Take],
+    segments: SegmentChoice,
+    law: &Law,
+    voice: SteadyVoice<'_>,
+) -> Result<htex_format::Fluctuation, AuthorError> {
+    let recordings: Vec<&Recording> = read_in_windows(takes, segments)
+        .filter(|recording| recording.duration_s() >= 2.0 * LEAST_S)
+        .collect();
+    if recordings.is_empty() {
+        return Ok(fluctuation);
+    }
+    let half = |recording: &Recording, number: usize| {
+        let middle = recording.samples() / 2;
+        Corrected::new(recording, number * middle..(number + 1) * middle, law)
+    };
+    let estimated = estimate(recordings.iter().map(|recording| half(recording, 0)));
+    let strength_db = estimated.map(htex_format::Fluctuation::decibels);
+    let (samples, rate_hz) = voice.render(strength_db)?;
+    let (mut weights, mut sums) = (0.0, [0.0; 2]);
+    for recording in recordings {
+        let second = half(recording, 1);
+        let halves = half(recording, 0).fluctuation().zip(second.fluctuation());
+        let Some((before, after)) = halves else { continue };
+        let Some(played_db) = error_of_parts(&after, &second, &samples, rate_hz) else { continue };
+        let weight = recording.duration_s();
+        weights += weight;
+        sums[0] += weight * played_db;
+        sums[1] += weight * before.error_rms_db(&after);
+    }
+    let mean = |sum: f64| (sum / weights).min(htex_format::Fluctuation::MOST_ERROR_DB);
+    let [held_out_error_db, halves_error_db] = sums.map(|sum| (weights > 0.0).then(|| mean(sum)));
+    Ok(htex_format::Fluctuation { held_out_error_db, halves_error_db, ..fluctuation })
+}
+
+/// Returns the mean difference of a recording's modulation spectrum to the ones of parts of a
+/// rendering. The parts are as long as the recording. `None` if they cannot be measured.
+fn error_of_parts(
+    recorded: &Fluctuation,
+    recording: &Corrected,
+    samples: &[f64],
+    rate_hz: f64,
+) -> Option<f64> {
+    // The third octaves end at 0.95 of half the sample rate. Of a recording with a low sample rate,
+    // the rendering has twice the rate. Only every second sample makes them end at the same place.
+    let every = if recording.rate_hz < LOW_RATE * rate_hz { 2 } else { 1 };
+    let samples: Vec<f64> = samples.iter().copied().step_by(every).collect();
+    let rate_hz = rate_hz / every as f64;
+    let part = libm::ceil(recording.duration_s() * rate_hz) as usize;
+    let parts = samples.chunks_exact(part.clamp(1, samples.len()));
+    let measured = parts.map(|part| Fluctuation::new(&[part], rate_hz));
+    let measured = measured.collect::<Option<Vec<Fluctuation>>>()?;
+    let sum: f64 = measured.iter().map(|part| recorded.error_rms_db(part)).sum();
+    Some(sum / measured.len() as f64)
 }
 
 /// Measures how the voice of a model fluctuates with the given parameters.
@@ -140,11 +280,8 @@ pub(crate) fn voice_fluctuation(
     parameters: &[f64],
     reference: SpectrumRef<'_>,
 ) -> Result<Option<Fluctuation>, AuthorError> {
-    let rate_hz = 4.0 * reference.band.high_hz;
-    let lead = (LEAD_S * rate_hz) as usize;
-    let mut samples = vec![0.0f32; lead + (SECONDS * rate_hz) as usize];
-    Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
-    let samples: Vec<f64> = samples[lead..].iter().map(|x| f64::from(*x)).collect();
+    let (samples, rate_hz) =
+        SteadyVoice { model, parameters, band: reference.band }.render(None)?;
     Ok(Fluctuation::new(&[&samples], rate_hz))
 }
 

@@ -129,6 +129,45 @@ fn what_is_too_short_states_no_fluctuation() {
     assert_eq!(stated(vec![sweeps], SegmentChoice::Sweeps), None);
 }
 
+/// The errors are those of the envelope on halves that it was not estimated from.
+#[test]
+fn the_error_is_measured_on_second_halves() {
+    let errors = |recordings: Vec<Recording>, segments| {
+        let stated = stated(recordings, segments).unwrap();
+        println!("{stated:?}");
+        (stated.held_out_error_db, stated.halves_error_db)
+    };
+    let windows = SegmentChoice::Windows;
+    // Both halves fluctuate alike.
+    for (seconds, most_db) in [(60.0, 3.0), (8.0, 6.0)] {
+        let (held_out, halves) = errors(vec![noise([4.0, 3.0], seconds, 1, 1)], windows);
+        assert!((0.1..most_db).contains(&held_out.unwrap()), "{held_out:?}");
+        assert!((0.1..most_db).contains(&halves.unwrap()), "{halves:?}");
+    }
+    // The second half does not fluctuate.
+    let mut changed = noise([5.0, 4.0], 40.0, 1, 2);
+    let steady = noise([0.0; 2], 40.0, 2, 2);
+    let middle = changed.samples() / 2;
+    for (axis, other) in changed.axes.iter_mut().zip(&steady.axes) {
+        axis[middle..].copy_from_slice(&other[middle..]);
+    }
+    let (held_out, halves) = errors(vec![changed.clone()], windows);
+    assert!(held_out.unwrap() > 5.0 && halves.unwrap() > 5.0, "{held_out:?} {halves:?}");
+    // Averaged by the lengths.
+    let alike = noise([5.0, 4.0], 40.0, 3, 2);
+    let (_, other) = errors(vec![alike.clone()], windows);
+    let (_, both) = errors(vec![changed, alike], windows);
+    let mean = 0.5 * (halves.unwrap() + other.unwrap());
+    assert!((both.unwrap() - mean).abs() < 1e-9, "{both:?} {mean}");
+    // At a low sample rate, there are fewer third octaves.
+    let mut slow = noise([4.0, 3.0], 60.0, 1, 1);
+    slow.axes[0] = slow.axes[0].chunks_exact(2).map(|pair| pair[0]).collect();
+    slow.rate_hz /= 2.0;
+    let (held_out, _) = errors(vec![slow], windows);
+    assert!(held_out.unwrap() < 4.0, "{held_out:?}");
+    assert_eq!(errors(vec![noise([4.0, 3.0], 5.9, 1, 1)], windows), (None, None));
+}
+
 /// A level that only follows the finger is the law's, which a player applies itself.
 #[test]
 fn changes_of_speed_and_force_are_divided_out() {

@@ -82,6 +82,21 @@ pub(super) fn manifests() -> Vec<Named> {
             m["htex"] = json!("1.1");
             m["fluctuation"] = json!({ "slow": 12 });
         }),
+        ("fluctuation_invalid", |m| {
+            m["htex"] = json!("1.1");
+            m["fluctuation"] = json!({ "slow": 12, "fast": 0, "held_out_error_db": -0.5 });
+        }),
+        ("fluctuation_invalid_each", |m| {
+            m["htex"] = json!("1.1");
+            m["law"] = json!({
+                "frequency_speed": { "exponent": 0, "source": "assumed" },
+                "level_speed": { "exponent": 0, "source": "assumed" },
+                "level_force": { "exponent": 5, "source": "given" },
+            });
+            m["fluctuation"] = json!({
+                "slow": 12, "fast": 0, "held_out_error_db": 100.5, "halves_error_db": -0.5,
+            });
+        }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
         ("field_unknown", |m| m["representations"][0]["fields"][0]["name"] = json!("alfa")),

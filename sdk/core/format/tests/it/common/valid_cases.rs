@@ -86,6 +86,15 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_fluctuation_errors",
+            with_manifest(|m| {
+                m["htex"] = json!("1.1");
+                m["fluctuation"] = json!({
+                    "slow": 112, "fast": 71, "held_out_error_db": 100, "halves_error_db": 0,
+                });
+            }),
+        ),
+        (
             "valid_mixed",
             with_manifest(|m| {
                 m["provenance"]["made"] = json!({

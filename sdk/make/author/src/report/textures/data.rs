@@ -64,6 +64,8 @@ pub struct Texture {
     /// Text that says whether a finger or a tool slid over the texture. It also says how
     /// frequencies and level are predicted for motions that were not recorded. May be empty.
     pub law: String,
+    /// Text that says how strongly the texture becomes stronger and weaker in time. May be empty.
+    pub fluctuation: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
     /// Size of the asset's file, bytes.

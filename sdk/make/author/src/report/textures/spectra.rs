@@ -59,14 +59,13 @@ fn row(texture: &Texture) -> Element {
     Element::new("section")
         .set("class", "row")
         .child(&row_heading(texture))
-        .children(law(texture))
+        .children([&texture.law, &texture.fluctuation].into_iter().filter_map(detail))
         .child(&panels)
 }
 
-/// Returns a paragraph about how the texture follows motions that were not recorded.
-fn law(texture: &Texture) -> Option<Element> {
-    let said = (!texture.law.is_empty()).then_some(&texture.law)?;
-    Some(Element::new("p").set("class", "law").text(said))
+/// Returns a paragraph about the texture; `None` if there is nothing to say.
+fn detail(said: &String) -> Option<Element> {
+    (!said.is_empty()).then(|| Element::new("p").set("class", "law").text(said))
 }
 
 fn row_heading(texture: &Texture) -> Element {

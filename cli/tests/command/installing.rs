@@ -130,6 +130,25 @@ fn a_model_is_published_and_installed_by_its_id() {
     let listed: serde_json::Value = serde_json::from_str(&listed).unwrap();
     assert_eq!(listed["models"][0]["signer"]["name"], json!("alice"));
 
+    // An asset that does not bring the model along plays as it does for the author.
+    author.does(&["simulate", "--surface", "vinyl", "--seconds", "2", "-o", "vinyl.csv"]);
+    author.does(&[
+        "fit",
+        "vinyl.csv",
+        "--plugin",
+        "first.wasm",
+        "--model",
+        "bursts",
+        "-o",
+        "a.htex",
+    ]);
+    let synth = ["synth", "a.htex", "--model", "org.example.bursts", "--seconds", "1", "-o"];
+    author.does(&[&synth[..], &["author.wav", "--plugin", "first.wasm"]].concat());
+    assert_ne!(author.run(&[&synth[..], &["none.wav"]].concat()).code(), 0);
+    user.does(&[&synth[..], &["user.wav"]].concat());
+    let samples = |file| std::fs::read(place.path(file)).unwrap();
+    assert_eq!(samples("author.wav"), samples("user.wav"));
+
     // A new version that sounds different.
     publish(&place, &key, &[("2.0.0", "first.wasm"), ("2.1.0", "broken.wasm")]);
     let error = user.cannot(&["plugin", "update", "--registry", "registry"]);

@@ -258,10 +258,10 @@ typedef struct htex_reader {
      */
     void *context;
     /*
-     Must fill `buffer` with the `len` bytes of the file from `offset` on. It must return 0, or
-     any other number after an error. The requested bytes always lie within the file. The library
-     calls this function in the thread that called the library. If the file is a library of
-     textures, several threads may call the function at the same time.
+     Must fill `buffer` with `len` bytes of the file, starting at `offset`. It must return 0
+     after success, and any other number after an error. The requested bytes always lie within
+     the file. The library calls this function in the thread that called the library. If the file
+     is a texture library, several threads may call the function at the same time.
      */
     int32_t (*read)(void *context, uint64_t offset, uint8_t *buffer, size_t len);
     /*
@@ -323,7 +323,7 @@ typedef struct htex_motion {
     double position_mm;
     /*
      Place on the surface: coordinate x, mm, positive or negative. If `x_mm` or `y_mm` is NAN,
-     the place is unknown. Only models that map a surface use the place.
+     the place is unknown. Only models that contain a map of the surface use the place.
      */
     double x_mm;
     /*
@@ -344,7 +344,7 @@ typedef struct htex_device {
 } htex_device;
 
 /*
- What a device has done since it was opened. Set `size` to sizeof(htex_device_counts) before the
+ Statistics of a device since it was opened. Set `size` to sizeof(htex_device_counts) before the
  call.
  */
 typedef struct htex_device_counts {
@@ -430,9 +430,9 @@ typedef struct htex_files {
      */
     void *context;
     /*
-     Must open the file `name` and fill in `file`, whose `size` is already set. It must return 0,
-     or any other number if there is no such file. `name` is the file's name in the scene file,
-     in UTF-8.
+     Must open the file `name` and fill in `file`. The library has already set the field `size`
+     of `file`. It must return 0 after success, and any other number if there is no such file.
+     `name` is the file's name in the scene file, in UTF-8.
      */
     int32_t (*open)(void *context, const char *name, struct htex_reader *file);
 } htex_files;
@@ -531,8 +531,8 @@ typedef struct htex_voice_options {
      */
     double ceiling;
     /*
-     If not 0, the texture becomes stronger and weaker in time as its recording did, if the asset
-     states how much. The mean square of the samples stays the same.
+     If not 0, the strength of the texture fluctuates over time as in its recording, if the asset
+     contains this fluctuation. The fluctuation does not change the mean square of the samples.
      */
     uint32_t fluctuation;
 } htex_voice_options;
@@ -549,8 +549,8 @@ typedef struct htex_voice {
 } htex_voice;
 
 /*
- Level and mean frequency of what a voice played since the last htex_voice_envelope. Set `size`
- to sizeof(htex_envelope) before the call.
+ Level and mean frequency of the samples that a voice played since the last call of
+ htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
  */
 typedef struct htex_envelope {
     /*
@@ -784,8 +784,8 @@ htex_status htex_library_from_bytes(const uint8_t *bytes, size_t len, struct hte
 
 /*
  [any thread; calls the reader] Opens a library whose bytes come from the program's own
- functions, `reader`. The call copies the struct `reader`. The functions in `reader` may be
- called until the library is freed.
+ functions, `reader`. The call copies the struct `reader`. The library may call the functions in
+ `reader` until htex_library_free frees the library.
  */
 htex_status htex_library_open_reader(const struct htex_reader *reader, struct htex_library *out);
 
@@ -905,7 +905,7 @@ htex_status htex_scene_rate_hz(struct htex_scene scene, double *out);
 /*
  [one thread at a time; real-time: neither allocates nor locks] Sets the position and motion of
  the finger. The call has an effect only if the scene's motion is `live`, which means that the
- program supplies it.
+ program supplies the motion.
  */
 htex_status htex_scene_set_finger(struct htex_scene scene, const struct htex_finger *finger);
 
@@ -930,8 +930,8 @@ htex_status htex_scene_stop(struct htex_scene scene);
  function that was set with htex_set_log. Existing handles become invalid, but new objects may be
  made afterwards. The constants of the models that the program used stay in memory. For all six
  built-in models together, these constants take 0.2 MB. If an object is in use, the call returns
- HTEX_STATUS_BUSY. Objects of the same kind, and of the kinds that come later in this order, are
- then not freed.
+ HTEX_STATUS_BUSY. In this case, objects of the same kind, and of the kinds that come later in
+ the order above, are not freed.
  */
 htex_status htex_shutdown(void);
 
@@ -989,8 +989,8 @@ htex_status htex_voice_is_silent(struct htex_voice voice, uint32_t *out);
 
 /*
  [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
- Spectrum and level change gradually to the new motion. If the call fails, the voice continues to
- play the previous motion.
+ The spectrum and the level change gradually until they match the new motion. If the call fails,
+ the voice continues to play the previous motion.
  */
 htex_status htex_voice_set_motion(struct htex_voice voice, const struct htex_motion *motion);
 
@@ -1008,11 +1008,11 @@ htex_status htex_voice_render_add(struct htex_voice voice, float *out, size_t fr
 
 /*
  [one thread at a time; real-time: neither allocates nor locks] Writes the level and mean
- frequency of what the voice played since the last call. Both are measured after the voice's
- effects, gain and limit. Use this call for phones, game controllers and motors that receive a
- level and a frequency instead of samples. `bands` receives the mean square of the samples in
- each of the voice's `envelope_bands`, in the asset's unit squared. `bands` may be NULL if
- `bands_len` is 0.
+ frequency of the samples that the voice played since the last call. Both are measured after the
+ voice's effects, gain and limit. Use this call for phones, game controllers and motors that
+ receive a level and a frequency instead of samples. `bands` receives the mean square of the
+ samples in each of the voice's `envelope_bands`, in the asset's unit squared. `bands` may be
+ NULL if `bands_len` is 0.
 
  The level is exact. The mean frequency and the bands are computed from Hann windows of N
  samples, where N is the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A new
@@ -1026,8 +1026,9 @@ htex_status htex_voice_envelope(struct htex_voice voice, struct htex_envelope *o
 /*
  [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz. `len` must be
  the number of bands plus one. The edges go from the lowest to the highest frequency of the
- asset, spaced by equal ratios. The first band also includes all frequencies below it, down to 0
- Hz. The last band also includes all frequencies above it, up to half the sample rate.
+ asset, and the ratio of neighbouring edges is constant. The first band also includes all
+ frequencies below it, down to 0 Hz. The last band also includes all frequencies above it, up to
+ half the sample rate.
  */
 htex_status htex_voice_envelope_edges(struct htex_voice voice, double *edges_hz, size_t len);
 

@@ -59,12 +59,12 @@ fn row(texture: &Texture) -> Element {
     Element::new("section")
         .set("class", "row")
         .child(&row_heading(texture))
-        .children([&texture.law, &texture.fluctuation].into_iter().filter_map(detail))
+        .children([&texture.law, &texture.fluctuation].into_iter().filter_map(|said| detail(said)))
         .child(&panels)
 }
 
 /// Returns a paragraph about the texture; `None` if there is nothing to say.
-fn detail(said: &String) -> Option<Element> {
+fn detail(said: &str) -> Option<Element> {
     (!said.is_empty()).then(|| Element::new("p").set("class", "law").text(said))
 }
 

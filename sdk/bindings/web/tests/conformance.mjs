@@ -31,8 +31,10 @@ async function played(texture, frequencies, { model, speed_mm_s: speed, force_n:
   try {
     // The sign of a speed is only its direction.
     const at = { model, at: speed === undefined && force === undefined ? undefined : { speed: speed && Math.abs(speed), force } };
-    const voice = texture.voice({ model, rate: 48000 });
-    const coverage = at.at ? voice.coverage(texture.motion(at.at, model)) : undefined;
+    // The voice begins at the motion of the case, because the default condition may be refused.
+    const motion = at.at && texture.motion(at.at, model);
+    const voice = texture.voice({ model, rate: 48000, motion });
+    const coverage = motion && voice.coverage(motion);
     voice.free();
     return {
       parameters: await flat(texture, at),

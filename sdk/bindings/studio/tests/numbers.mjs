@@ -62,7 +62,8 @@ async function sizes() {
     return all.reduce((sum, bytes) => sum + gzipSync(bytes, { level: 9 }).length, 0);
   };
   const kB = (bytes) => `${(bytes / 1e3).toFixed(1)} kB gzipped`;
-  const index = await packed((name) => /^index.*\.(js|css)$/.test(name));
+  const html = await readFile(path.join(folder, "index.html"), "utf8");
+  const index = await packed((name) => /\.(js|css)$/.test(name) && html.includes(name));
   print("page at its start: script (the package's, too) and style sheet", kB(index));
   print("screen of recordings, when it is first shown (uPlot)", kB(await packed((name) => /^record.*\.(js|css)$/.test(name))));
   print("worklet and workers", kB(await packed((name) => /^(processor|worker|author-worker|reading-worker).*\.js$/.test(name))));

@@ -223,8 +223,9 @@ impl Stage {
         }
     }
 
-    /// Computes the butterflies of `from` and writes them to `to`. For each group of twiddles, the
-    /// results of all `k` follow each other.
+    /// Computes the butterflies of `from` and writes them to `to`. It handles `groups * WIDTH`
+    /// butterflies at a time. For these, it writes first all results with `k = 0`, then all with
+    /// `k = 1`, and so on.
     #[inline(always)]
     fn turn<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
         let run = self.groups * WIDTH;
@@ -252,8 +253,8 @@ impl Stage {
         }
     }
 
-    /// Copies results to the places of their points. In the source, the results of all `k` follow
-    /// each other in groups of [`WIDTH`].
+    /// Copies results to the places of their points. In the source, each [`WIDTH`] butterflies have
+    /// first all results with `k = 0`, then all with `k = 1`, and so on.
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {

@@ -116,8 +116,8 @@ impl Instance {
         self.guest.memory_bytes()
     }
 
-    /// Returns the address of a buffer in the module's memory with at least `bytes` bytes, a
-    /// multiple of 8. The buffer is reallocated only if it is too small.
+    /// Returns the address of a buffer of at least `bytes` bytes in the module's memory. The address
+    /// is a multiple of 8. The buffer is reallocated only if it is too small.
     pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
         let bytes = if self.module.limits.guards { bytes + GUARD.len() } else { bytes };
         if bytes <= self.buffer.1 as usize {

@@ -57,8 +57,9 @@ impl Lines {
         })
     }
 
-    /// Returns half the distance from a line to its neighbours below and above. The outermost lines
-    /// reach as far outwards as inwards.
+    /// Returns half the distance from a line to its neighbours below and above. An outermost line
+    /// has only one neighbour, so both values are half the distance to this neighbour. A line
+    /// without neighbours has `log(SINGLE)` on both sides.
     pub(super) fn halves(lines: &[f64], i: usize) -> [f64; 2] {
         let half = |a: Option<&f64>, b: Option<&f64>| Some(0.5 * (b? - a?));
         let below = half(i.checked_sub(1).and_then(|k| lines.get(k)), lines.get(i));

@@ -18,8 +18,8 @@ const RAMP_S: f64 = 0.06;
 const WANDER: f64 = 0.1;
 /// Range of the frequencies of these changes, Hz: far below the texture's frequencies.
 const WANDER_HZ: [f64; 2] = [0.1, 0.4];
-/// Cutoff frequency of changes of direction, Hz. Friction turns with the direction, and at 20 Hz
-/// this must be weaker than any texture.
+/// Cutoff frequency of changes of direction, Hz. The friction force changes its direction with the
+/// motion. The cutoff is so low that at 20 Hz this change of force is weaker than any texture.
 const HEADING_HZ: f64 = 0.3;
 /// Cutoff frequency of the change of force between strokes, Hz.
 const FORCE_HZ: f64 = 8.0;

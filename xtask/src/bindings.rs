@@ -14,7 +14,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 
-pub(crate) use fixtures::command;
+pub use fixtures::command;
 
 use crate::jobs::at_a_time;
 use crate::places::{cargo, emptied, target, workspace};

@@ -18,6 +18,7 @@ pub mod platform;
 pub mod plugins;
 pub mod programs;
 pub mod prove;
+pub mod registry;
 pub mod release;
 pub mod shelf;
 pub mod shell;

@@ -1,6 +1,6 @@
 //! Developer tasks: `cargo xtask`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::Result;
@@ -56,6 +56,9 @@ enum Task {
     /// Rebuild the library of textures that comes with the studio and with releases:
     /// sdk/bindings/studio/shelf/shelf.htexlib
     StudioShelf,
+    /// Make an example registry of plugins, and check it: the built-in models as modules, an output
+    /// and an input
+    Registry(Out),
     /// Run a proof in full; continuous integration runs only a sample of it
     #[command(subcommand, arg_required_else_help = true)]
     Prove(Proof),
@@ -107,10 +110,23 @@ fn main() -> Result<()> {
         Task::Web(to) => xtask::web::web(&to.out),
         Task::Studio(to) => xtask::studio::studio(&to.out),
         Task::StudioShelf => xtask::shelf::shelf(),
+        Task::Registry(to) => example_registry(&to.out),
         Task::Prove(proof) => prove::prove(&proof),
         Task::Generate => xtask::generated::generate(),
         Task::Census { list } => xtask::census::census(list),
     }
+}
+
+/// Makes the example registry, checks it, and writes its page.
+fn example_registry(out: &Path) -> Result<()> {
+    let htex = xtask::bindings::command()?;
+    xtask::registry::registry(out, &htex)?;
+    run(Command::new(&htex).args(["registry", "check", "--run-native"]).arg(out))?;
+    run(Command::new(&htex)
+        .args(["registry", "page"])
+        .arg(out)
+        .arg("-o")
+        .arg(out.join("index.html")))
 }
 
 impl Plugins {

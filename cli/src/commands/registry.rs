@@ -11,10 +11,11 @@ use super::subcommands;
 use crate::failure::{Exit, Failure, Result};
 use crate::located;
 use crate::output::{print, print_json, show, shown, write_file};
+use crate::plugin_registry::add::{Added, Texts, add};
 use crate::plugin_registry::check::{entries, local_files, owners, problems};
 use crate::plugin_registry::page::page;
 
-/// Check a registry of plugins
+/// Make or check a registry of plugins
 ///
 /// A registry is a folder, in a repository or on a web server, from which `htex plugin install ID
 /// --registry DIR` installs plugins. It has a file plugins/ID.toml for each plugin.
@@ -26,6 +27,7 @@ pub(crate) struct Registry {
 
 subcommands! {
     Command {
+        Add(Add),
         Check(Check),
         Page(Page),
     }
@@ -34,6 +36,45 @@ subcommands! {
 impl Registry {
     pub(crate) fn run(self) -> Result {
         self.command.run()
+    }
+}
+
+/// Add a signed plugin to a registry
+///
+/// Copies the plugin and its signature into the registry, and writes the plugin's entry or adds the
+/// version to it. The id and the version come from the signature (`htex sign`), and the summary
+/// comes from the plugin's descriptor (`htex plugin export`). If the registry already has an entry
+/// of this id, the plugin must be signed with the key of this entry.
+#[derive(Args)]
+pub(crate) struct Add {
+    /// Folder of the registry
+    #[arg(value_name = "DIR")]
+    registry: PathBuf,
+
+    /// The plugin: a model or a device, with its signature FILE.sig beside it
+    #[arg(value_name = "FILE")]
+    plugin: PathBuf,
+
+    /// What the plugin does, in one sentence [default: the summary of its descriptor]
+    #[arg(long, value_name = "TEXT")]
+    summary: Option<String>,
+
+    /// Licence of the plugin, as an SPDX expression; for a new entry
+    #[arg(long, value_name = "SPDX")]
+    license: Option<String>,
+
+    /// Address of the plugin's source code; for a new entry
+    #[arg(long, value_name = "URL")]
+    source: Option<String>,
+}
+
+impl Add {
+    pub(crate) fn run(self) -> Result {
+        let Self { registry, plugin, summary, license, source } = self;
+        let added = add(&registry, &plugin, &Texts { summary, license, source })?;
+        let Added { entry, id, version, platform } = added;
+        print(&format!("{}: {id} {version} for {platform}\n", shown(&entry)))?;
+        Ok(Exit::SUCCESS)
     }
 }
 

@@ -86,23 +86,34 @@ fn check_file(
 ) -> Result<(), String> {
     let path = registry.join(&file.file);
     let bytes = read_regular(&path, MOST_PLUGIN_BYTES).map_err(|error| error.to_string())?;
-    if blake3::hash(&bytes).to_hex().as_str() != file.blake3 {
+    let signature = read_regular(&signature_path(&path), MOST_SIGNATURE_BYTES)
+        .map_err(|error| format!("its signature: {error}"))?;
+    check_bytes(entry, version, file, &bytes, &signature)
+}
+
+/// Checks the bytes of a file of an entry, and of the file's signature.
+pub(super) fn check_bytes(
+    entry: &Entry,
+    version: &str,
+    file: &PlatformFile,
+    bytes: &[u8],
+    signature: &[u8],
+) -> Result<(), String> {
+    if blake3::hash(bytes).to_hex().as_str() != file.blake3 {
         return Err("its BLAKE3 is another".to_owned());
     }
     if bytes.starts_with(b"\0asm") != (file.platform == "wasm") {
         return Err(format!("it is not for the platform {}", file.platform));
     }
-    if PluginKind::of(&bytes) != Some(entry.kind) {
+    if PluginKind::of(bytes) != Some(entry.kind) {
         return Err(format!("it is no {}", entry.kind.name()));
     }
-    let signature = read_regular(&signature_path(&path), MOST_SIGNATURE_BYTES)
-        .map_err(|error| format!("its signature: {error}"))?;
-    let signature = FileSignature::from_json(&signature).map_err(|error| error.to_string())?;
+    let signature = FileSignature::from_json(signature).map_err(|error| error.to_string())?;
     let kind = match entry.kind {
         PluginKind::Model => SignedKind::Plugin,
         PluginKind::Device => SignedKind::Device,
     };
-    let content = SignedContent::plugin(kind, &entry.id, version, &bytes);
+    let content = SignedContent::plugin(kind, &entry.id, version, bytes);
     let key = signature.check(&content).map_err(|error| error.to_string())?;
     if key != entry.key {
         return Err("it is signed with another key than the entry's".to_owned());

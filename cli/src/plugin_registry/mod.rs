@@ -1,6 +1,7 @@
 //! Registries of plugins: a folder, or a place on the web, with one TOML file for each plugin
-//! (`docs/registry.md`).
+//! (`docs/signatures.md`).
 
+pub(crate) mod add;
 pub(crate) mod check;
 pub(crate) mod page;
 

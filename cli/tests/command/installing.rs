@@ -65,29 +65,6 @@ fn build(place: &Place, to: &str, changes: &[(&str, &str)]) -> bool {
     xtask::needs::WASM_CLANG.met(built.is_ok())
 }
 
-/// Writes the registry's entry with these versions, and copies their files.
-fn publish(place: &Place, key: &str, versions: &[(&str, &str)]) {
-    let mut entry = format!(
-        "id = \"org.example.bursts\"\nkind = \"model\"\nsummary = \"Bursts of noise\"\n\
-         license = \"MIT\"\nsource = \"https://example.org/bursts\"\nkey = \"{key}\"\n"
-    );
-    for (version, file) in versions {
-        let bytes = std::fs::read(place.path(file)).unwrap();
-        let hash = blake3::hash(&bytes).to_hex();
-        entry += &format!(
-            "[[versions]]\nversion = \"{version}\"\n[[versions.files]]\nplatform = \"wasm\"\n\
-             file = \"files/{file}\"\nblake3 = \"{hash}\"\n"
-        );
-        for folder in ["registry/files", "registry/plugins"] {
-            std::fs::create_dir_all(place.path(folder)).unwrap();
-        }
-        place.write(&format!("registry/files/{file}"), bytes);
-        let signature = std::fs::read(place.path(&format!("{file}.sig"))).unwrap();
-        place.write(&format!("registry/files/{file}.sig"), signature);
-    }
-    place.write("registry/plugins/org.example.bursts.toml", entry);
-}
-
 /// One publishes a model, and another one installs it by its id, updates it, and plays an asset
 /// with it. A broken version, another key and changed bytes are refused with one sentence, and
 /// change nothing.
@@ -118,7 +95,13 @@ fn a_model_is_published_and_installed_by_its_id() {
         let run = author.run(&[&["plugin", "check", file][..], &against].concat());
         assert_eq!(run.code(), code, "{file}: {}", run.text());
     }
-    publish(&place, &key, &[("2.0.0", "first.wasm")]);
+    let add = |file| ["registry", "add", "registry", file];
+    let texts = ["--license", "MIT", "--source", "https://example.org/bursts"];
+    let error = author.run(&add("first.wasm")).error();
+    assert!(error.contains("new in this registry; give --license"), "{error}");
+    assert!(!place.path("registry").exists());
+    let said = author.does(&[&add("first.wasm")[..], &texts].concat());
+    assert!(said.contains("org.example.bursts 2.0.0 for wasm"), "{said}");
     author.does(&["registry", "check", "registry", "--only", "org.example.none"]);
 
     let install = ["plugin", "install", "org.example.bursts", "--registry", "registry"];
@@ -150,7 +133,9 @@ fn a_model_is_published_and_installed_by_its_id() {
     assert_eq!(samples("author.wav"), samples("user.wav"));
 
     // A new version that sounds different.
-    publish(&place, &key, &[("2.0.0", "first.wasm"), ("2.1.0", "broken.wasm")]);
+    author.does(&add("broken.wasm"));
+    let error = author.cannot(&add("broken.wasm"));
+    assert!(error.contains("already has version 2.1.0 for wasm"), "{error}");
     let error = user.cannot(&["plugin", "update", "--registry", "registry"]);
     assert!(error.contains("2.1.0 does not play what 2.0.0 plays"), "{error}");
     assert_eq!(user.installed(), first);
@@ -159,7 +144,12 @@ fn a_model_is_published_and_installed_by_its_id() {
     author.does(&["sign", "broken.wasm", "--key", "mallory"]);
     let error = user.cannot(&["plugin", "install", "broken.wasm"]);
     assert!(error.contains("not signed with the key of the installed version 2.0.0"), "{error}");
-    publish(&place, &key, &[("2.0.0", "first.wasm"), ("2.1.0", "broken.wasm")]);
+    author.does(&["sign", "major.wasm", "--key", "mallory"]);
+    let error = author.cannot(&add("major.wasm"));
+    assert!(error.contains("signed with another key than the entry's"), "{error}");
+    let published = |version: &str| format!("registry/files/org.example.bursts-{version}.wasm");
+    let signature = std::fs::read(place.path("broken.wasm.sig")).unwrap();
+    place.write(&format!("{}.sig", published("2.1.0")), signature);
     let error = user.cannot(&install);
     assert!(error.contains("not signed with the key that the registry lists"), "{error}");
     let run = author.run(&["registry", "check", "registry"]);
@@ -169,7 +159,7 @@ fn a_model_is_published_and_installed_by_its_id() {
     // Bytes that were changed, with and without the registry's hash.
     let mut changed = std::fs::read(place.path("first.wasm")).unwrap();
     changed.push(0);
-    place.write("registry/files/first.wasm", &changed);
+    place.write(&published("2.0.0"), &changed);
     let error = user.cannot(&[&install[..], &["--version", "2.0.0"]].concat());
     assert!(error.contains("changed after it was signed"), "{error}");
     assert_eq!(user.installed(), first);
@@ -287,4 +277,34 @@ fn a_signature_names_its_signer_and_covers_every_texture() {
     std::fs::remove_file(place.path("a.htex.sig")).unwrap();
     let run = user.run(&["verify", "a.htex"]);
     assert!(run.code() == 1 && run.text().contains("not signed"), "{}", run.text());
+}
+
+/// Makes the example registry, which lists the built-in models, an output and an input, and
+/// installs a model and the input from it.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_example_registry_is_valid_and_installs() {
+    let place = Place::new();
+    if xtask::plugins::wasm_if_there().is_none() {
+        return;
+    }
+    let htex = Path::new(env!("CARGO_BIN_EXE_htex"));
+    xtask::registry::registry(&place.path("registry"), htex).unwrap();
+    let author = Person { place: &place, name: "author" };
+    let ids = ["org.htex.sslope", "org.example.strip", "org.example.ridges"];
+    let only = ids.map(|id| ["--only", id]).concat();
+    let checked =
+        author.does(&[&["registry", "check", "registry", "--run-native"][..], &only].concat());
+    assert!(checked.ends_with("3 plugins, 0 with problems\n"), "{checked}");
+    author.does(&["registry", "page", "registry", "-o", "index.html"]);
+    let page = std::fs::read_to_string(place.path("index.html")).unwrap();
+    for model in xtask::plugins::models().unwrap() {
+        assert!(page.contains(&format!("org.htex.{model}")), "{model}");
+    }
+    let from = ["--registry", "registry", "--accept-key", "--yes"];
+    for id in [ids[0], ids[2]] {
+        author.does(&[&["plugin", "install", id][..], &from].concat());
+    }
+    let listed = author.does(&["device", "list", "--json"]);
+    assert!(listed.contains(ids[2]), "{listed}");
 }

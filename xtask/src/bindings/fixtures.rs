@@ -20,7 +20,10 @@ const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
 /// Builds the `htex` command together with libhtex, and returns its path.
-pub(crate) fn command() -> Result<PathBuf> {
+///
+/// # Errors
+/// When it cannot be built.
+pub fn command() -> Result<PathBuf> {
     let build = Build::here()?;
     run(&mut build.cargo_of_both())?;
     let name = format!("htex{}", std::env::consts::EXE_SUFFIX);

@@ -186,6 +186,7 @@ pub(crate) fn shown(path: &Path) -> String {
 }
 
 /// Returns a line that a POSIX shell splits into these arguments.
+#[cfg(feature = "check")]
 pub(crate) fn command_line(arguments: &[OsString]) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-+=.,:/@%".contains(c);
     let quoted = |argument: &OsString| {

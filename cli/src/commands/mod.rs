@@ -4,17 +4,22 @@ mod bake;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
+#[cfg(feature = "terminal")]
 mod completions;
+#[cfg(feature = "check")]
 mod conformance;
 mod demo;
 mod device;
 mod edit;
 pub(crate) mod explain;
+#[cfg(feature = "exchange")]
 mod export;
 mod fit;
+#[cfg(feature = "exchange")]
 mod formats;
 mod gain;
 mod guard;
+#[cfg(feature = "exchange")]
 mod import;
 mod info;
 mod key;
@@ -22,6 +27,7 @@ mod lib;
 #[cfg(feature = "build")]
 mod library_build;
 mod make;
+#[cfg(feature = "terminal")]
 mod manual;
 mod mix;
 mod plan;
@@ -35,6 +41,7 @@ mod registry;
 mod render;
 #[cfg(feature = "lab")]
 mod response;
+#[cfg(feature = "schemas")]
 mod schema;
 mod sign;
 mod simulate;
@@ -87,9 +94,9 @@ subcommands! {
         Build(library_build::Build) if feature = "build",
         Make(make::Make),
         Mix(mix::Mix),
-        Import(Box<import::Import>),
-        Export(export::Export),
-        Formats(formats::Formats),
+        Import(Box<import::Import>) if feature = "exchange",
+        Export(export::Export) if feature = "exchange",
+        Formats(formats::Formats) if feature = "exchange",
         Compare(compare::Compare),
         Tradeoff(tradeoff::Tradeoff),
         Studio(studio::Studio) if feature = "lab",
@@ -101,10 +108,10 @@ subcommands! {
         Guard(guard::Guard),
         CompileModule(compile_module::CompileModule) if feature = "wasm",
         Lib(lib::Lib),
-        Completions(completions::Completions),
-        Man(manual::Manual),
-        Schema(schema::Schema),
-        Conformance(conformance::Conformance),
+        Completions(completions::Completions) if feature = "terminal",
+        Man(manual::Manual) if feature = "terminal",
+        Schema(schema::Schema) if feature = "schemas",
+        Conformance(conformance::Conformance) if feature = "check",
         Key(key::Key),
         Sign(sign::Sign),
         Verify(verify::Verify),

@@ -1,6 +1,7 @@
 //! Arguments for finding devices and for their settings, shared by several commands.
 
 use std::collections::BTreeMap;
+#[cfg(feature = "check")]
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,5 +1,6 @@
 //! Standard output and standard error.
 
+#[cfg(feature = "check")]
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::File;

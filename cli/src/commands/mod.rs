@@ -55,26 +55,58 @@ mod tradeoff;
 mod validate;
 mod verify;
 
-/// Defines an enum of subcommands, each of which runs itself.
+/// Defines an enum of subcommands, each of which runs itself. In a program without a subcommand's
+/// feature, the subcommand is hidden and says so.
 macro_rules! subcommands {
     ($name:ident {
-        $($(#[$meta:meta])* $variant:ident($args:ty) $(if $cfg:meta)?,)*
+        $($(#[$meta:meta])* $variant:ident($args:ty) $(if feature = $feature:literal)?,)*
     }) => {
         #[derive(clap::Subcommand)]
         pub(crate) enum $name {
-            $($(#[$meta])* $(#[cfg($cfg)])? $variant($args),)*
+            $(
+                $(#[$meta])* $(#[cfg(feature = $feature)])?
+                $variant($args),
+                $(
+                    #[cfg(not(feature = $feature))]
+                    #[command(hide = true, disable_help_flag = true)]
+                    $variant($crate::commands::Absent),
+                )?
+            )*
         }
 
         impl $name {
             pub(crate) fn run(self) -> crate::failure::Result {
                 match self {
-                    $($(#[cfg($cfg)])? Self::$variant(args) => args.run(),)*
+                    $(
+                        $(#[cfg(feature = $feature)])?
+                        Self::$variant(args) => args.run(),
+                        $(
+                            #[cfg(not(feature = $feature))]
+                            Self::$variant(absent) => absent.run($feature),
+                        )?
+                    )*
                 }
             }
         }
     };
 }
 use subcommands;
+
+/// This command is not part of this program.
+#[derive(clap::Args)]
+pub(crate) struct Absent {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    _arguments: Vec<std::ffi::OsString>,
+}
+
+impl Absent {
+    #[allow(dead_code, reason = "with all features, no command is absent")]
+    fn run(self, feature: &str) -> crate::failure::Result {
+        Err(crate::failure::Failure::Usage(format!(
+            "this program was built without this command; build it with the Cargo feature `{feature}`, which is on by default"
+        )))
+    }
+}
 
 subcommands! {
     Command {

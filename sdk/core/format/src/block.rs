@@ -568,6 +568,24 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// The forms of section 4 of `spec/htex-1.md`.
+    #[test]
+    fn a_length_has_its_shortest_form() {
+        for (length, form) in [
+            (250, &[0xFA][..]),
+            (251, &[0xFB, 0xFB, 0]),
+            (0xFFFF, &[0xFB, 0xFF, 0xFF]),
+            (0x1_0000, &[0xFC, 0, 0, 1, 0]),
+            (0xFFFF_FFFF, &[0xFC, 0xFF, 0xFF, 0xFF, 0xFF]),
+            (0x1_0000_0000, &[0xFD, 0, 0, 0, 0, 1, 0, 0, 0]),
+        ] {
+            let mut bytes = Vec::new();
+            put_length(&mut bytes, length);
+            assert_eq!(bytes, form);
+            assert_eq!(Reader { bytes: &bytes, limit: 0, left: 0 }.any_length(), Some(length));
+        }
+    }
+
     proptest! {
         #[test]
         fn each_value_of_steps_that_work_leads_back_to_its_step(

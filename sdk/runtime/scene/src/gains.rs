@@ -228,3 +228,19 @@ impl Gain {
             && same == (&key.person, &key.device, &key.profile)
     }
 }
+
+#[cfg(all(test, feature = "schemars"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keys_are_those_of_the_schema() {
+        let names = |of: &Value| {
+            let names = of["properties"].as_object().unwrap().keys();
+            names.cloned().collect::<BTreeSet<String>>()
+        };
+        let (keys, schema) = (keys(), crate::gains_schema());
+        assert_eq!(names(&keys), names(&schema));
+        assert_eq!(names(&keys["properties"]["gains"]["items"]), names(&schema["$defs"]["Gain"]));
+    }
+}

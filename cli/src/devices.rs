@@ -1,6 +1,7 @@
 //! Arguments for finding devices and for their settings, shared by several commands.
 
 use std::collections::BTreeMap;
+#[cfg(feature = "check")]
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,9 +18,9 @@ use crate::output::warn;
 /// Says how to build this program with a device that it lacks.
 pub(crate) fn built_with(left_out: &Optional) -> String {
     let Optional { what, feature, package, .. } = left_out;
-    format!(
-        "`cargo install --path cli --features {feature}` builds one with {what}, which on Linux needs {package}"
-    )
+    let needs = package.map(|package| format!(", which on Linux needs {package}"));
+    let needs = needs.unwrap_or_default();
+    format!("`cargo install --path cli --features {feature}` builds one with {what}{needs}")
 }
 
 /// Returns the devices of this program in display order. The first input replays recordings.
@@ -93,6 +94,7 @@ impl DeviceArgs {
     }
 
     /// Returns these arguments as words of a command line, for another run of this program.
+    #[cfg(feature = "check")]
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
@@ -168,6 +170,7 @@ impl OneDeviceArgs {
     }
 
     /// Returns these arguments as words of a command line, for another run of this program.
+    #[cfg(feature = "check")]
     pub(crate) fn again(&self) -> Vec<OsString> {
         let mut arguments = self.devices.again();
         arguments.extend(self.settings.again());
@@ -203,6 +206,7 @@ impl SettingArgs {
     }
 
     /// Returns these arguments as words of a command line, for another run of this program.
+    #[cfg(feature = "check")]
     pub(crate) fn again(&self) -> Vec<OsString> {
         let profile = self.profile.iter().map(|name| ("--profile", name));
         let settings = self.settings.iter().map(|pair| ("--set", pair));

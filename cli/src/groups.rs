@@ -24,6 +24,7 @@ pub(crate) fn with_groups(command: Command) -> Command {
     let mut lists = String::new();
     for (heading, names) in GROUPS {
         let found = names.iter().filter_map(|name| command.find_subcommand(name));
+        let found = found.filter(|one| !one.is_hide_set());
         let lines: String = found.map(line).collect();
         if !lines.is_empty() {
             let _ = write!(lists, "{heading}:\n{lines}\n");

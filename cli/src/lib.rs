@@ -5,11 +5,13 @@
 #![forbid(unsafe_code)]
 
 mod assets;
+#[cfg(feature = "check")]
 mod checking;
 mod columns;
 mod commands;
 mod devices;
 mod differences;
+#[cfg(feature = "exchange")]
 mod explicit_args;
 mod failure;
 mod findings_format;
@@ -24,6 +26,8 @@ mod invocation;
 mod keys;
 mod located;
 mod motions;
+#[cfg(not(feature = "schemas"))]
+mod no_schemas;
 mod output;
 mod outputs;
 mod playing;
@@ -31,17 +35,24 @@ mod playing;
 mod plugin_registry;
 mod plugins;
 mod progress;
+#[cfg(feature = "check")]
 mod project;
 mod recording_plot;
 mod recordings;
 mod report;
+#[cfg(feature = "exchange")]
 mod scene_sound;
 mod scenes;
+#[cfg(feature = "schemas")]
 mod schemas;
+#[cfg(any(feature = "build", feature = "check", feature = "lab"))]
 mod shared;
 mod signals;
 mod wasm_limits;
 mod wav;
+
+#[cfg(not(feature = "schemas"))]
+use no_schemas as schemas;
 
 use std::ffi::OsString;
 

@@ -1,5 +1,6 @@
 //! Standard output and standard error.
 
+#[cfg(feature = "check")]
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::File;
@@ -186,6 +187,7 @@ pub(crate) fn shown(path: &Path) -> String {
 }
 
 /// Returns a line that a POSIX shell splits into these arguments.
+#[cfg(feature = "check")]
 pub(crate) fn command_line(arguments: &[OsString]) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-+=.,:/@%".contains(c);
     let quoted = |argument: &OsString| {

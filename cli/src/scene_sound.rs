@@ -63,7 +63,7 @@ impl Scene {
         Ok(Self {
             file: file.to_owned(),
             inputs,
-            rights: rights(&ready),
+            rights: ready.rights(),
             quantity: ready.scene.quantity(),
             band: band.unwrap_or(Band::TACTILE),
             seconds: seconds.or(own).unwrap_or(SECONDS),
@@ -103,12 +103,6 @@ impl Scene {
             samples.extend_from_slice(&block[..rendered]);
         }
     }
-}
-
-/// Returns the rights of all textures in a scene.
-pub(crate) fn rights(ready: &Ready) -> Rights {
-    let assets = ready.scene.assets.iter();
-    Rights::of_all(assets.map(|asset| Rights::from_manifest(asset.manifest())))
 }
 
 /// Whether a file is a scene, judged by its name.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_base::finding::Notice;
 use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
+use htex_format::Rights;
 use htex_host::{Registry, Search, WasmLimits};
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
@@ -177,6 +178,7 @@ pub(crate) struct Loader {
 impl Loader {
     /// Creates a loader with only this program's own devices, for scenes that are rendered but not
     /// played.
+    #[cfg(feature = "exchange")]
     pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self> {
         Ok(Self {
             models: player.registry()?,
@@ -213,6 +215,12 @@ impl Loader {
 }
 
 impl Ready {
+    /// Returns the rights of all textures in the scene.
+    pub(crate) fn rights(&self) -> Rights {
+        let assets = self.scene.assets.iter();
+        Rights::of_all(assets.map(|asset| Rights::from_manifest(asset.manifest())))
+    }
+
     pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan> {
         htex_scene::plan(&self.scene, &self.capabilities, costs).map_err(for_file(&self.file))
     }

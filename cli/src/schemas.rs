@@ -4,26 +4,15 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::AtFile;
 use htex_base::finding::{FINDINGS_TRUNCATED, Finding, Report, Rule, Severity};
+use htex_base::schema::{Schema, Violation};
 use htex_device::SettingKind;
 use htex_format::{EXTENSION_SCHEMA_BROKEN, SCHEMA_BROKEN};
 use serde_json::{Map, Value, json};
 
 use crate::failure::{Failure, Result};
 
-#[cfg(feature = "schemas")]
-use htex_base::schema::{Schema, Violation};
-#[cfg(not(feature = "schemas"))]
-use without_validator::{Schema, Violation};
-
-/// The note for builds that cannot validate documents against schemas.
-pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
-    None
-} else {
-    Some(
-        "this program was built without its validator of JSON Schemas; build it with the Cargo feature `schemas`, which \
-         is on by default",
-    )
-};
+/// The note for builds that cannot validate documents against schemas. This build can.
+pub(crate) const ABSENT: Option<&str> = None;
 
 /// Maximum number of findings in a report.
 const KEPT: usize = 100;
@@ -35,7 +24,26 @@ pub(crate) struct SchemaFile {
 }
 
 impl SchemaFile {
-    pub(crate) fn new(file: &str, schema: &Value) -> Result<Self> {
+    pub(crate) fn manifest() -> Result<Self> {
+        Self::new("manifest-1.json", &htex_format::manifest_schema())
+    }
+
+    pub(crate) fn scene() -> Result<Self> {
+        Self::new("scene-1.json", &htex_scene::scene_schema())
+    }
+
+    /// Returns the schema of a model's descriptor.
+    pub(crate) fn model() -> Result<Self> {
+        Self::new("descriptor-1.json", &htex_model::descriptor_schema())
+    }
+
+    /// Returns the schema of a device's descriptor.
+    pub(crate) fn device() -> Result<Self> {
+        let [(file, schema), ..] = htex_device::schemas();
+        Self::new(file, &schema)
+    }
+
+    fn new(file: &str, schema: &Value) -> Result<Self> {
         let schema =
             Schema::new(schema).map_err(|error| Failure::Other(format!("{file}: {error}")))?;
         let file = file.to_owned();
@@ -97,9 +105,6 @@ pub(crate) struct ExtensionSchema {
 impl ExtensionSchema {
     pub(crate) fn read(argument: &str) -> Result<Self> {
         let wrong = |what: String| Failure::Usage(format!("--extension-schema {argument}: {what}"));
-        if let Some(absent) = ABSENT {
-            return Err(wrong(absent.to_owned()));
-        }
         let form = || wrong("it looks like com.vendor.NAME/1=FILE".to_owned());
         let (name, file) = argument.split_once('=').ok_or_else(form)?;
         htex_format::check_extension_name(name).map_err(|error| wrong(error.to_string()))?;
@@ -160,35 +165,4 @@ pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<SchemaFile> {
         } } } },
     });
     SchemaFile::new(&format!("settings of {}", device.id), &schema)
-}
-
-/// Replaces the validator of JSON Schemas in a program that is built without the feature `schemas`.
-#[cfg(not(feature = "schemas"))]
-mod without_validator {
-    use std::convert::Infallible;
-
-    use serde_json::Value;
-
-    use crate::failure::Result;
-
-    /// A schema that does not check anything.
-    pub(crate) struct Schema;
-
-    /// A violation of a schema, which never occurs.
-    #[allow(dead_code)] // None is ever made.
-    pub(crate) struct Violation {
-        pub(crate) pointer: String,
-        pub(crate) rule: String,
-        pub(crate) message: String,
-    }
-
-    impl Schema {
-        pub(crate) fn new(_: &Value) -> Result<Self, Infallible> {
-            Ok(Self)
-        }
-
-        pub(crate) fn violations(&self, _: &Value) -> Vec<Violation> {
-            Vec::new()
-        }
-    }
 }

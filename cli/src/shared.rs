@@ -15,11 +15,14 @@ const VARIABLE: &str = "HTEX_STUDIO";
 const SHARED: &str = "../share/htex/studio";
 
 /// The environment variable that names the folder of the conformance files.
+#[cfg(feature = "check")]
 const CONFORMANCE: &str = "HTEX_CONFORMANCE";
 /// Where an installation keeps the conformance files, relative to the folder of the command.
+#[cfg(feature = "check")]
 const SHARED_CONFORMANCE: &str = "../share/htex/conformance";
 
 /// Returns the folder of the conformance files. `given` is the folder that the user names.
+#[cfg(feature = "check")]
 pub(crate) fn conformance(given: Option<PathBuf>) -> Result<PathBuf> {
     let named = given.or_else(|| std::env::var_os(CONFORMANCE).map(PathBuf::from));
     if let Some(folder) = named {

@@ -4,17 +4,22 @@ mod bake;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
+#[cfg(feature = "terminal")]
 mod completions;
+#[cfg(feature = "check")]
 mod conformance;
 mod demo;
 mod device;
 mod edit;
 pub(crate) mod explain;
+#[cfg(feature = "exchange")]
 mod export;
 mod fit;
+#[cfg(feature = "exchange")]
 mod formats;
 mod gain;
 mod guard;
+#[cfg(feature = "exchange")]
 mod import;
 mod info;
 mod key;
@@ -22,6 +27,7 @@ mod lib;
 #[cfg(feature = "build")]
 mod library_build;
 mod make;
+#[cfg(feature = "terminal")]
 mod manual;
 mod mix;
 mod plan;
@@ -35,6 +41,7 @@ mod registry;
 mod render;
 #[cfg(feature = "lab")]
 mod response;
+#[cfg(feature = "schemas")]
 mod schema;
 mod sign;
 mod simulate;
@@ -48,26 +55,58 @@ mod tradeoff;
 mod validate;
 mod verify;
 
-/// Defines an enum of subcommands, each of which runs itself.
+/// Defines an enum of subcommands, each of which runs itself. In a program without a subcommand's
+/// feature, the subcommand is hidden and says so.
 macro_rules! subcommands {
     ($name:ident {
-        $($(#[$meta:meta])* $variant:ident($args:ty) $(if $cfg:meta)?,)*
+        $($(#[$meta:meta])* $variant:ident($args:ty) $(if feature = $feature:literal)?,)*
     }) => {
         #[derive(clap::Subcommand)]
         pub(crate) enum $name {
-            $($(#[$meta])* $(#[cfg($cfg)])? $variant($args),)*
+            $(
+                $(#[$meta])* $(#[cfg(feature = $feature)])?
+                $variant($args),
+                $(
+                    #[cfg(not(feature = $feature))]
+                    #[command(hide = true, disable_help_flag = true)]
+                    $variant($crate::commands::Absent),
+                )?
+            )*
         }
 
         impl $name {
             pub(crate) fn run(self) -> crate::failure::Result {
                 match self {
-                    $($(#[cfg($cfg)])? Self::$variant(args) => args.run(),)*
+                    $(
+                        $(#[cfg(feature = $feature)])?
+                        Self::$variant(args) => args.run(),
+                        $(
+                            #[cfg(not(feature = $feature))]
+                            Self::$variant(absent) => absent.run($feature),
+                        )?
+                    )*
                 }
             }
         }
     };
 }
 use subcommands;
+
+/// This command is not part of this program.
+#[derive(clap::Args)]
+pub(crate) struct Absent {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    _arguments: Vec<std::ffi::OsString>,
+}
+
+impl Absent {
+    #[allow(dead_code, reason = "with all features, no command is absent")]
+    fn run(self, feature: &str) -> crate::failure::Result {
+        Err(crate::failure::Failure::Usage(format!(
+            "this program was built without this command; build it with the Cargo feature `{feature}`, which is on by default"
+        )))
+    }
+}
 
 subcommands! {
     Command {
@@ -87,9 +126,9 @@ subcommands! {
         Build(library_build::Build) if feature = "build",
         Make(make::Make),
         Mix(mix::Mix),
-        Import(Box<import::Import>),
-        Export(export::Export),
-        Formats(formats::Formats),
+        Import(Box<import::Import>) if feature = "exchange",
+        Export(export::Export) if feature = "exchange",
+        Formats(formats::Formats) if feature = "exchange",
         Compare(compare::Compare),
         Tradeoff(tradeoff::Tradeoff),
         Studio(studio::Studio) if feature = "lab",
@@ -101,10 +140,10 @@ subcommands! {
         Guard(guard::Guard),
         CompileModule(compile_module::CompileModule) if feature = "wasm",
         Lib(lib::Lib),
-        Completions(completions::Completions),
-        Man(manual::Manual),
-        Schema(schema::Schema),
-        Conformance(conformance::Conformance),
+        Completions(completions::Completions) if feature = "terminal",
+        Man(manual::Manual) if feature = "terminal",
+        Schema(schema::Schema) if feature = "schemas",
+        Conformance(conformance::Conformance) if feature = "check",
         Key(key::Key),
         Sign(sign::Sign),
         Verify(verify::Verify),

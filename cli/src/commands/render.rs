@@ -17,7 +17,6 @@ use crate::located;
 use crate::output::{OutputFile, note, show, shown, warn};
 use crate::playing::{Output, limited_text};
 use crate::progress::bar;
-use crate::scene_sound::rights;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::signals::{self, interrupted};
 use crate::wav::silence;
@@ -65,7 +64,7 @@ impl Render {
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
-        let rights = rights(&ready);
+        let rights = ready.rights();
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.scene))?;
         if self.json {
             // Timing slows the renderer down, and only JSON has the times.
@@ -150,7 +149,7 @@ impl Render {
             None => settings.text("path").into(),
         };
         ready.check_output(&path)?;
-        if let Some(beside) = rights(ready).beside(&path) {
+        if let Some(beside) = ready.rights().beside(&path) {
             ready.check_output(&beside)?;
         }
         let is_named = self.output.is_some() || self.choice.settings.given()?.contains_key("path");

@@ -123,11 +123,7 @@ impl Validate {
         if has("id") && has("fields") {
             let refused = htex_host::read_descriptor(&text()).err();
             let problem = refused.map(|error| error.to_string());
-            return descriptor(
-                &document,
-                problem,
-                SchemaFile::new("descriptor-1.json", &htex_model::descriptor_schema())?,
-            );
+            return descriptor(&document, problem, SchemaFile::model()?);
         }
         if has("id") && has("settings") {
             let read = serde_json::from_str::<htex_device::Descriptor>(&text());
@@ -138,14 +134,12 @@ impl Validate {
                 }),
                 Err(error) => Some(error.to_string()),
             };
-            let [(file, schema), ..] = htex_device::schemas();
-            return descriptor(&document, problem, SchemaFile::new(file, &schema)?);
+            return descriptor(&document, problem, SchemaFile::device()?);
         }
         let embedded = self.embedded_plugins.then(|| WasmLimit::all(&self.wasm_limit));
         let mut report = SceneArgs::validate(path, embedded)?;
         if document.get("htex_scene").is_some_and(|v| v == htex_scene::file::VERSION) {
-            SchemaFile::new("scene-1.json", &htex_scene::scene_schema())?
-                .check(&document, &mut report);
+            SchemaFile::scene()?.check(&document, &mut report);
             if let Some(settings) = SceneArgs::settings_schema(&document)? {
                 settings.check(&document, &mut report);
             }
@@ -264,8 +258,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report>
     let mut report = validate_with(&bytes, &limits, &known);
     if let Some(manifest) = htex_format::manifest_json(&bytes, &limits) {
         if is_of_major_1(&manifest, "htex") {
-            SchemaFile::new("manifest-1.json", &htex_format::manifest_schema())?
-                .check(&manifest, &mut report);
+            SchemaFile::manifest()?.check(&manifest, &mut report);
         }
         for extension in extensions {
             extension.check(&manifest, &mut report);

@@ -25,7 +25,7 @@ pub mod file;
 // In a web page, there are neither libraries to load nor threads that keep a clock.
 #[cfg(not(target_family = "wasm"))]
 pub mod motor;
-#[cfg(not(target_family = "wasm"))]
+#[cfg(all(feature = "openxr", not(target_family = "wasm")))]
 pub mod parametric;
 #[cfg(not(target_family = "wasm"))]
 pub mod sdl;
@@ -46,7 +46,7 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
         Arc::new(channels::Channels),
         #[cfg(not(target_family = "wasm"))]
         Arc::new(sdl::Sdl),
-        #[cfg(not(target_family = "wasm"))]
+        #[cfg(all(feature = "openxr", not(target_family = "wasm")))]
         Arc::new(parametric::Parametric),
         #[cfg(feature = "daq")]
         Arc::new(daq::DaqInput),
@@ -55,16 +55,16 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// A device that is built in only with a Cargo feature. The device consists of an output and an
-/// input with the same name.
+/// A device that is built in only with a Cargo feature: an output, or an output and an input with
+/// the same name.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,
     /// What the output plays, in one word that messages use.
     pub what: &'static str,
     pub feature: &'static str,
-    /// The Linux package that is needed to build the device.
-    pub package: &'static str,
+    /// The Linux package that is needed to build the device, if any.
+    pub package: Option<&'static str>,
     /// Whether this program was built with the feature.
     pub is_built: bool,
 }
@@ -74,8 +74,17 @@ pub const SOUND: Optional = Optional {
     id: "org.htex.audio",
     what: "sound",
     feature: "audio",
-    package: "libasound2-dev",
+    package: Some("libasound2-dev"),
     is_built: cfg!(feature = "audio"),
+};
+
+/// The device that plays a texture on controllers behind OpenXR.
+pub const OPENXR: Optional = Optional {
+    id: "org.htex.parametric",
+    what: "OpenXR",
+    feature: "openxr",
+    package: None,
+    is_built: cfg!(feature = "openxr"),
 };
 
 impl Optional {
@@ -83,7 +92,7 @@ impl Optional {
     /// built without it.
     pub fn left_out(name: &str) -> Option<Self> {
         let named = |one: &Self| [one.id, one.short_name()].contains(&name);
-        [SOUND].into_iter().find(|one| !one.is_built && named(one))
+        [SOUND, OPENXR].into_iter().find(|one| !one.is_built && named(one))
     }
 
     /// Returns the last part of the device's id.

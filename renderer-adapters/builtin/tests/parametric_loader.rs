@@ -1,6 +1,6 @@
 //! Plays through the OpenXR loader of the Khronos Group, which finds the runtime by the manifest
 //! that the environment names.
-#![cfg(target_os = "linux")]
+#![cfg(all(feature = "openxr", target_os = "linux"))]
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the environment is set.
 
 #[allow(dead_code)]

@@ -244,8 +244,26 @@ fn what_the_command_compiles_is_not_compiled_again() {
     assert_eq!(again, [""; 0], "the feature `like-tests` of htex-python leaves these out");
 }
 
-/// The README's first command uses no default features, but Cargo unites the features of all
-/// default members for it. None of them may turn on what takes minutes to build.
+/// Largest number of packages that the README's first command compiles.
+const SHORT: usize = 110;
+
+/// The README's first command compiles few packages. `-p` matters: without it, Cargo unites the
+/// features of all default members.
+#[test]
+fn the_first_command_compiles_few_packages() {
+    let readme = std::fs::read_to_string(workspace().join("README.md")).unwrap();
+    assert!(readme.contains("cargo run -p htex-cli --profile quick --no-default-features"));
+    let lines = compiled(&["--package=htex-cli", "--no-default-features"]);
+    let names = lines.iter().filter_map(|line| line.split_once(" v"));
+    let packages: BTreeSet<&str> = names.map(|(name, _)| name).collect();
+    assert!(packages.len() <= SHORT, "{} packages: {packages:?}", packages.len());
+    let optional = ["htex-exchange", "htex-check", "indicatif", "openxr-sys", "schemars", "toml"];
+    let found = optional.map(|name| packages.contains(name));
+    assert_eq!(found, [false; 6], "{optional:?}");
+}
+
+/// Without `-p`, Cargo unites the features of all default members for `cargo run`. None of them may
+/// turn on what takes minutes to build.
 #[test]
 fn the_short_build_stays_short() {
     let metadata = metadata();

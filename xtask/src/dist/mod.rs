@@ -76,7 +76,7 @@ pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
     const ALL_BUT_CLOUD: [&str; 3] = [
         "--no-default-features",
         "--features",
-        "htex-cli/wasm,htex-cli/schemas,htex-cli/build,htex-cli/lab-files,htex-cli/lab,htex-capi/wasm,htex-capi/library,htex-capi/scene",
+        "htex-cli/wasm,htex-cli/schemas,htex-cli/build,htex-cli/lab-files,htex-cli/lab,htex-cli/exchange,htex-cli/check,htex-cli/openxr,htex-cli/terminal,htex-capi/wasm,htex-capi/library,htex-capi/scene",
     ];
     match (build.is_release(), build.platform().system) {
         (true, System::MacOs) => &ALL_BUT_CLOUD,

@@ -1,8 +1,10 @@
 //! The subcommand `htex device`.
 
+#[cfg(feature = "check")]
 mod check;
 mod info;
 mod list;
+#[cfg(feature = "check")]
 mod new;
 
 use clap::Args;
@@ -21,10 +23,10 @@ subcommands! {
     Command {
         List(list::List),
         Info(info::Info),
-        Check(check::Check),
-        New(new::New),
+        Check(check::Check) if feature = "check",
+        New(new::New) if feature = "check",
         #[command(hide = true)]
-        CheckOne(check::CheckOne),
+        CheckOne(check::CheckOne) if feature = "check",
     }
 }
 

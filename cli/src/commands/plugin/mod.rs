@@ -1,14 +1,17 @@
 //! The subcommand `htex plugin` for authors and users of models.
 
+#[cfg(feature = "check")]
 mod bench;
 #[cfg(feature = "build")]
 mod candidate;
+#[cfg(feature = "check")]
 mod check;
 mod export;
 mod info;
 #[cfg(feature = "build")]
 mod install;
 mod list;
+#[cfg(feature = "check")]
 mod new;
 #[cfg(feature = "build")]
 mod remove;
@@ -34,15 +37,15 @@ subcommands! {
     Command {
         List(list::List),
         Info(info::Info),
-        Check(check::Check),
+        Check(check::Check) if feature = "check",
         Install(install::Install) if feature = "build",
         Remove(remove::Remove) if feature = "build",
         Update(update::Update) if feature = "build",
         Export(export::Export),
-        New(new::New),
-        Bench(bench::Bench),
+        New(new::New) if feature = "check",
+        Bench(bench::Bench) if feature = "check",
         #[command(hide = true)]
-        CheckOne(check::CheckOne),
+        CheckOne(check::CheckOne) if feature = "check",
     }
 }
 

@@ -18,6 +18,7 @@ mod plan;
 mod worker;
 
 pub use paced::PacedOutput;
+#[cfg(feature = "openxr")]
 pub(crate) use plan::DEFAULT_GAIN;
 pub use plan::{Plan, buffer_setting, has_usual_buffer, rate_error, reducing_settings};
 

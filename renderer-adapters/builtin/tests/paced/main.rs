@@ -4,9 +4,13 @@
 
 mod channels;
 mod motor;
+#[cfg(feature = "openxr")]
 mod parametric_envelopes;
+#[cfg(feature = "openxr")]
 mod parametric_mock;
+#[cfg(feature = "openxr")]
 mod parametric_points;
+#[cfg(feature = "openxr")]
 mod parametric_rules;
 #[cfg(target_os = "linux")]
 mod sdl;

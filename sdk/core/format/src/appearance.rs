@@ -1,7 +1,6 @@
 //! The asset extension that states how the surface looks. Programs that show textures use it.
 //! Players do not need it.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Manifest;
@@ -18,31 +17,33 @@ pub const APPEARANCE: &str = "org.htex.appearance/1";
 /// println!("{}", look.map_or("no colour".to_owned(), |look| format!("hue {}°", look.hue_deg)));
 /// # Ok::<(), htex_format::ReadError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Appearance {
     /// Hue of the colour, degrees. Hue, saturation and lightness have the same meaning as in
     /// `hsl()` of CSS, in the sRGB colour space.
-    #[schemars(range(min = 0, max = 360))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 360)))]
     pub hue_deg: f64,
     /// Saturation of the colour: 0 is grey.
-    #[schemars(range(min = 0, max = 1))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1)))]
     pub saturation: f64,
     /// Lightness of the colour: 0 is black, 1 is white.
-    #[schemars(range(min = 0, max = 1))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1)))]
     pub lightness: f64,
     /// Gloss: 0 is matt, 1 reflects like a mirror.
-    #[schemars(range(min = 0, max = 1))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1)))]
     pub gloss: f64,
     /// Depth of the relief: 0 is flat, 1 is the deepest relief that a program draws.
-    #[schemars(range(min = 0, max = 1))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1)))]
     pub relief: f64,
     /// Pattern of the relief. The spectrum of the texture determines how fine the pattern is.
     pub pattern: Pattern,
 }
 
 /// The pattern of a relief.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Pattern {
     /// The same in all directions, e.g. stone or paper.

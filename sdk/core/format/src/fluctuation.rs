@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The fluctuation of a texture: the strength of one random envelope that multiplies all bands.
@@ -18,24 +17,25 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(fluctuation.map(|f| (f.slow, f.fast)), Some((96, 49)));
 /// assert_eq!(Fluctuation::from_db([0.0, 0.01]), None);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Fluctuation {
     /// Standard deviation of the part at 0.5 to 8 Hz, in steps of 1/32 dB.
-    #[schemars(range(min = 0, max = 255))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 255)))]
     pub slow: u8,
     /// Standard deviation of the part at 8 to 32 Hz, in steps of 1/32 dB.
-    #[schemars(range(min = 0, max = 255))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 255)))]
     pub fast: u8,
     /// Held-out error, decibels: the fluctuation was estimated from the first halves of the
     /// recordings and played. The error is the RMS difference to the second halves, over their
     /// modulation spectra.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 100))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 100)))]
     pub held_out_error_db: Option<f64>,
     /// Difference between the first and the second halves of the recordings, decibels: the same RMS
     /// over modulation spectra. It says how much a second recording differs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 100))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 100)))]
     pub halves_error_db: Option<f64>,
 }
 

@@ -10,15 +10,13 @@
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Quantity, UnknownName};
 
 /// The kind of contact: what slid over the surface.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Contact {
     /// A bare or gloved finger, or a soft artificial fingertip.
@@ -81,7 +79,8 @@ impl clap::ValueEnum for Contact {
 /// let law = Law::assumed(Quantity::LateralForce, Contact::Finger);
 /// assert_eq!((law.frequency_factor(2.0), law.level_factor(2.0, 0.5)), (2.0, 0.5));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Law {
     /// Exponent a: how frequencies change with the speed.
     pub frequency_speed: Exponent,
@@ -92,10 +91,11 @@ pub struct Law {
 }
 
 /// An exponent of a motion law, and its source.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Exponent {
     /// The exponent that a player uses, -4 to 4.
-    #[schemars(range(min = -4, max = 4))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -4, max = 4)))]
     pub exponent: f64,
     /// Source of the exponent.
     pub source: ExponentSource,
@@ -105,12 +105,13 @@ pub struct Exponent {
     pub estimate: Option<f64>,
     /// Standard error of `estimate`, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub standard_error: Option<f64>,
 }
 
 /// Source of an exponent of a motion law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ExponentSource {
     /// Measured from recordings at several speeds or forces.

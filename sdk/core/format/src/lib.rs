@@ -46,12 +46,17 @@ mod packed;
 mod page;
 mod quality;
 mod quality_json;
+#[cfg(feature = "schemars")]
+mod quality_schema;
 mod quantity;
 mod range_coder;
 mod rights;
 mod rounding;
 mod rules;
+#[cfg(feature = "schemars")]
 mod schema_words;
+#[cfg(feature = "schemars")]
+mod schemas;
 #[allow(missing_docs, reason = "fields and variants name what they hold")]
 pub mod signing;
 mod stages;
@@ -89,13 +94,15 @@ pub use manifest::{
     VERSION,
 };
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
-pub use page::{appearance_schema, manifest_schema, report_schema, validation_page};
+pub use page::validation_page;
 pub use quality::{HeldOut, KeyedMeasures, LeftOut, Measures, Quality};
 pub use quantity::{Quantity, UnknownName};
 pub use rights::{Rights, license_file, read_license_file};
 pub use rules::{
     DESCRIPTOR_INVALID, EXTENSION_SCHEMA_BROKEN, PLUGIN_UNUSABLE, RULES, SCHEMA_BROKEN,
 };
+#[cfg(feature = "schemars")]
+pub use schemas::{appearance_schema, manifest_schema, report_schema};
 pub use stages::{STAGES, rules_of};
 pub use triangles::{Triangle, TrianglesError, check_triangles};
 pub use validate::{manifest_bytes, manifest_json, validate, validate_with};

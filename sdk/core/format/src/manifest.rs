@@ -6,7 +6,6 @@
 use std::collections::BTreeMap;
 
 use htex_model::Band;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -15,6 +14,7 @@ use crate::error::MetadataError;
 use crate::law::{Contact, Law};
 use crate::measure::{ErrorMeasure, Measure};
 use crate::quality::{HeldOut, LeftOut, Quality};
+#[cfg(feature = "schemars")]
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
@@ -42,18 +42,19 @@ pub const HATT: &str = "org.htex.hatt/1";
 /// println!("{} at {} conditions", manifest.name, manifest.conditions.len());
 /// # Ok::<(), htex_format::ReadError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(extend("oneOf" = quantities_and_units()))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(extend("oneOf" = quantities_and_units())))]
 pub struct Manifest {
     /// Version of the format, `MAJOR.MINOR`.
-    #[schemars(regex(pattern = r"^1\.(0|[1-9][0-9]*)$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = r"^1\.(0|[1-9][0-9]*)$")))]
     pub htex: String,
     /// Name of the texture.
-    #[schemars(regex(pattern = htex_base::schema::NOT_BLANK))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = htex_base::schema::NOT_BLANK)))]
     pub name: String,
     /// SPDX licence expression of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1)))]
     pub license: Option<String>,
     /// Author of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -69,7 +70,7 @@ pub struct Manifest {
     pub source: Option<String>,
     /// DOI of the recordings or of the paper that describes them, without `https://doi.org/`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(regex(pattern = DOI))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = DOI)))]
     pub doi: Option<String>,
     /// Kind and model of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -88,13 +89,13 @@ pub struct Manifest {
     pub unit: String,
     /// Frequency band of the spectra.
     #[serde(with = "BandText")]
-    #[schemars(with = "BandText")]
+    #[cfg_attr(feature = "schemars", schemars(with = "BandText"))]
     pub band: Band,
     /// How the asset was made.
     #[serde(default, skip_serializing_if = "Provenance::is_empty")]
     pub provenance: Provenance,
     /// The conditions (speed and force) at which the texture was recorded.
-    #[schemars(length(min = 1), extend("uniqueItems" = true))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1), extend("uniqueItems" = true)))]
     pub conditions: Vec<Condition>,
     /// The motion law: how frequencies and level change at speeds and forces outside the recorded
     /// conditions. Without this key, the usual law for `contact` and `quantity` applies.
@@ -105,14 +106,14 @@ pub struct Manifest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fluctuation: Option<Fluctuation>,
     /// The representations of the texture: each contains the parameters of one model.
-    #[schemars(length(min = 1), extend("uniqueItems" = true))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1), extend("uniqueItems" = true)))]
     pub representations: Vec<Representation>,
     /// The archive entry with the recorded spectra.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
     /// Embedded models, for players that do not have them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(extend("uniqueItems" = true))]
+    #[cfg_attr(feature = "schemars", schemars(extend("uniqueItems" = true)))]
     pub plugins: Vec<Plugin>,
     /// Data of extensions, by the extension's name (`com.vendor.NAME/REV`).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -122,7 +123,7 @@ pub struct Manifest {
     pub extensions_required: Vec<String>,
     /// Keys that this version of the format does not know, e.g. from a newer minor version.
     #[serde(flatten)]
-    #[schemars(skip)]
+    #[cfg_attr(feature = "schemars", schemars(skip))]
     pub other: BTreeMap<String, Value>,
 }
 
@@ -183,20 +184,22 @@ impl Manifest {
 }
 
 /// A frequency band. The band includes both edges.
-#[derive(Serialize, Deserialize, JsonSchema)]
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(remote = "Band")]
-#[schemars(rename = "Band")]
+#[cfg_attr(feature = "schemars", schemars(rename = "Band"))]
 struct BandText {
     /// Lower edge, hertz, above 0.
-    #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 20000), extend("exclusiveMinimum" = 0)))]
     low_hz: f64,
     /// Upper edge, hertz, above the lower edge.
-    #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 20000), extend("exclusiveMinimum" = 0)))]
     high_hz: f64,
 }
 
 /// How an asset was made.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Provenance {
     /// Name and version of the program that wrote the asset.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -225,7 +228,8 @@ impl Provenance {
 }
 
 /// How an asset without recordings was made.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Made {
     /// The method.
     pub how: How,
@@ -235,7 +239,8 @@ pub struct Made {
 }
 
 /// A method of making an asset without recordings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum How {
     /// The parameters were written by hand.
@@ -245,32 +250,34 @@ pub enum How {
 }
 
 /// An asset that was mixed with other assets to make this asset.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Ingredient {
     /// Name of the asset's texture.
     pub name: String,
     /// The asset's share of the mixture, from 0 to 1.
-    #[schemars(range(min = 0, max = 1))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1)))]
     pub weight: f64,
     /// BLAKE3 of the asset's file, 64 hexadecimal digits.
-    #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[0-9A-Fa-f]{64}$")))]
     pub blake3: String,
 }
 
 /// A recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Source {
     /// File name without its folder.
     pub file: String,
     /// Sample rate, hertz.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub rate_hz: f64,
     /// Number of segments of the recording that were averaged.
     pub segments: u64,
     /// BLAKE3 of the recording's file, 64 hexadecimal digits. The hash distinguishes recordings
     /// with the same file name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[0-9A-Fa-f]{64}$")))]
     pub blake3: Option<String>,
 }
 
@@ -281,26 +288,27 @@ pub struct Source {
 /// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
 /// assert_eq!(condition.force_n, None);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Condition {
     /// Speed of the finger along the surface, mm/s, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub speed_mm_s: Option<f64>,
     /// Normal force, newtons, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub force_n: Option<f64>,
     /// Repeatability, decibels: an estimate of how much a second recording of the same surface
     /// would differ. The estimate is the RMS, over nine bands, of the level differences between the
     /// odd and the even blocks of the recording, divided by √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub repeatability_rms_db: Option<f64>,
     /// Repeatability over third octaves instead of nine bands; otherwise the same as
     /// `repeatability_rms_db`. From version 1.1 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub repeatability_third_octave_rms_db: Option<f64>,
     /// Number of recorded segments that were averaged at this condition, or 0 if the condition was
     /// interpolated between recorded conditions.
@@ -335,19 +343,20 @@ impl Condition {
 /// }
 /// # Ok::<(), htex_format::ReadError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Representation {
     /// Reverse-DNS id of the model.
-    #[schemars(regex(pattern = MODEL_ID))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = MODEL_ID)))]
     pub model: String,
     /// Semantic version of the model that fitted the parameters.
-    #[schemars(regex(pattern = SEMANTIC_VERSION))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = SEMANTIC_VERSION)))]
     pub model_version: String,
     /// Parameter fields, in the order in which the flat parameter array contains them.
-    #[schemars(extend("uniqueItems" = true))]
+    #[cfg_attr(feature = "schemars", schemars(extend("uniqueItems" = true)))]
     pub fields: Vec<StoredField>,
     /// The conditions for which the parameter block contains parameters, in the order of the block.
-    #[schemars(length(min = 1), extend("uniqueItems" = true))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1), extend("uniqueItems" = true)))]
     pub at: Vec<AtCondition>,
     /// The triangles between conditions in which a player interpolates. Their corners are indices
     /// into `at`. If this list is empty, the rules of the specification determine the triangles.
@@ -355,16 +364,17 @@ pub struct Representation {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<Triangle>,
     /// Name of the archive entry that contains the parameter block.
-    #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries())))]
     pub parameters: String,
 }
 
 /// A parameter field and its storage.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Field")]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(rename = "Field"))]
 pub struct StoredField {
     /// Name, as in the model's descriptor.
-    #[schemars(length(min = 1))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1)))]
     pub name: String,
     /// Unit symbol; empty for a pure number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -379,10 +389,11 @@ pub struct StoredField {
 
 /// Storage of a number. The integer kinds store a whole number `q` for the value `offset +
 /// scale·q`, or for `exp(offset + scale·q)` if `log` is set.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Store")]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(rename = "Store"))]
 #[serde(rename_all = "lowercase")]
-#[schemars(transform = open_variants)]
+#[cfg_attr(feature = "schemars", schemars(transform = open_variants))]
 pub enum StoredAs {
     /// IEEE 754 binary64.
     #[default]
@@ -402,10 +413,11 @@ pub enum StoredAs {
 }
 
 /// Step size and offset of an integer storage.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Steps {
     /// Size of a step: the factor of `q`, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// Value for `q = 0`. If `log` is set, `offset` is the natural logarithm of that value.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -474,13 +486,14 @@ impl AtCondition {
 /// }
 /// # Ok::<(), htex_format::ReadError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct AtCondition {
     /// Index of the condition in the manifest's `conditions`.
     pub condition: usize,
     /// Level: the RMS of the fitted spectrum in the band, in the asset's unit. The parameters
     /// describe only the shape of the spectrum, which has an RMS of 1.
-    #[schemars(range(min = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub level_rms: f64,
     /// How well the model agrees with the recorded spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -492,28 +505,30 @@ pub struct AtCondition {
 }
 
 /// The archive entry with the recorded spectra.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Reference {
     /// Name of the archive entry. The entry contains the recorded magnitudes for each condition, on
     /// the band's 5 Hz grid, as 32-bit floats, in the asset's unit.
-    #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries())))]
     pub file: String,
 }
 
 /// A model that is embedded in the asset, as a WASM module.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Plugin {
     /// Reverse-DNS id of the model.
-    #[schemars(regex(pattern = MODEL_ID))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = MODEL_ID)))]
     pub model: String,
     /// Semantic version of the model in the module.
-    #[schemars(regex(pattern = SEMANTIC_VERSION))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = SEMANTIC_VERSION)))]
     pub version: String,
     /// Name of the archive entry that contains the module: `plugins/ID.wasm`.
-    #[schemars(regex(pattern = r"^plugins/[a-z0-9._-]+\.wasm$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = r"^plugins/[a-z0-9._-]+\.wasm$")))]
     pub file: String,
     /// BLAKE3 of the module, 64 lower-case hexadecimal digits.
-    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[0-9a-f]{64}$")))]
     pub blake3: String,
     /// Signature of the module's author.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -521,12 +536,13 @@ pub struct Plugin {
 }
 
 /// An ed25519 signature over a plugin's model, version and hash.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Signature {
     /// The signer's public key, 64 hexadecimal digits.
-    #[schemars(regex(pattern = "^[0-9a-fA-F]{64}$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[0-9a-fA-F]{64}$")))]
     pub public_key: String,
     /// The signature, 128 hexadecimal digits.
-    #[schemars(regex(pattern = "^[0-9a-fA-F]{128}$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[0-9a-fA-F]{128}$")))]
     pub ed25519: String,
 }

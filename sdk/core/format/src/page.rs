@@ -1,9 +1,8 @@
-//! Generates `spec/validation.md`, and the schemas of `spec/schemas` that this crate defines.
+//! Generates `spec/validation.md`.
 
-use htex_base::finding::{FileReport, colophon, rules_page};
-use serde_json::Value;
+use htex_base::finding::{colophon, rules_page};
 
-use crate::{Appearance, Manifest, RULES, STAGES, rules_of};
+use crate::{RULES, STAGES, rules_of};
 
 const HEAD: &str = "\
 # Findings of validation
@@ -29,24 +28,4 @@ pub fn validation_page() -> String {
     }
     head += "\n## Codes\n";
     rules_page(&head, RULES) + &colophon("sdk/core/format/src/rules.rs")
-}
-
-/// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
-pub fn manifest_schema() -> Value {
-    htex_base::schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
-}
-
-/// Generates the JSON Schema of a validation report: `spec/schemas/report-1.json`.
-pub fn report_schema() -> Value {
-    htex_base::schema::document::<FileReport>(
-        "report-1.json",
-        "report of validation of an htex file",
-    )
-}
-
-/// Generates the JSON Schema of the extension `org.htex.appearance/1`:
-/// `spec/schemas/appearance-1.json`.
-pub fn appearance_schema() -> Value {
-    let title = "extension org.htex.appearance/1 of htex assets";
-    htex_base::schema::document::<Appearance>("appearance-1.json", title)
 }

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::measure::{By, Measure};
@@ -131,7 +130,8 @@ pub struct LeftOut(pub Measures);
 
 /// The held-out error of a representation at a condition: the third-octave error on recorded blocks
 /// that the fit did not use.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct HeldOut {
     /// The error, decibels.
     pub held_out_error_db: f64,

@@ -1,16 +1,13 @@
 //! JSON of `quality` and `left_out`. The keys of these two JSON objects come from the table of
-//! measures. This module reads, writes and checks these objects, and describes them in the JSON
-//! Schema.
+//! measures. This module reads, writes and checks these objects. The module `quality_schema`
+//! describes them in the JSON Schema.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{self, DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::{Map, Value, json};
 
 use crate::measure::{By, Measure, MeasureKind};
 use crate::quality::{LeftOut, Quality};
@@ -27,8 +24,9 @@ const KEYS: usize = 2 * Measure::ALL.len() + 2;
 pub(crate) struct Entry<'a> {
     pub(crate) key: &'static str,
     pub(crate) content: Content<'a>,
-    required: bool,
-    description: &'static str,
+    pub(crate) required: bool,
+    #[cfg_attr(not(feature = "schemars"), expect(dead_code, reason = "for the schema"))]
+    pub(crate) description: &'static str,
 }
 
 pub(crate) enum Content<'a> {
@@ -45,6 +43,7 @@ pub(crate) enum Slot<'a> {
 /// An object whose keys come from the table of measures.
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
+    #[cfg_attr(not(feature = "schemars"), expect(dead_code, reason = "for the schema"))]
     const DESCRIPTION: &'static str;
     /// Returns all keys in file order, including keys without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
@@ -193,33 +192,6 @@ impl<'a, T: Entries> Visitor<'_> for Key<'a, T> {
     }
 }
 
-fn schema<T: Entries>() -> Schema {
-    let (mut properties, mut required) = (Map::new(), Vec::new());
-    let object = T::default();
-    for entry in object.entries() {
-        let mut property = match entry.content {
-            Content::Bands(_) => json!({
-                "type": "array", "items": { "type": "number" }, "minItems": BAND_COUNT, "maxItems": BAND_COUNT,
-            }),
-            Content::Number(_, MeasureKind::Correlation) => {
-                json!({ "type": "number", "minimum": -1, "maximum": 1 })
-            }
-            Content::Number(_, MeasureKind::Error) => {
-                json!({ "type": "number", "minimum": 0 })
-            }
-            Content::Number(..) => json!({ "type": "number" }),
-        };
-        property["description"] = entry.description.into();
-        if entry.required {
-            required.push(Value::from(entry.key));
-        }
-        properties.insert(entry.key.into(), property);
-    }
-    schemars::json_schema!({
-        "type": "object", "description": T::DESCRIPTION, "properties": properties, "required": required,
-    })
-}
-
 macro_rules! in_json {
     ($($name:ident)*) => {$(
         impl Serialize for $name {
@@ -233,16 +205,6 @@ macro_rules! in_json {
                 // As a struct and not as a map, so that the reader of manifests refuses an array
                 // here.
                 deserializer.deserialize_struct(Self::NAME, &[], Reader(PhantomData))
-            }
-        }
-
-        impl JsonSchema for $name {
-            fn schema_name() -> Cow<'static, str> {
-                Self::NAME.into()
-            }
-
-            fn json_schema(_: &mut SchemaGenerator) -> Schema {
-                schema::<Self>()
             }
         }
     )*};

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A physical quantity of samples. Each quantity has one unit, which assets and players use for the
@@ -14,9 +13,8 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Quantity::Acceleration.unit(), "m/s2");
 /// assert_eq!("lateral_force".parse(), Ok(Quantity::LateralForce));
 /// ```
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Force on the finger or tool along the surface, N.

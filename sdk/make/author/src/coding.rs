@@ -2,7 +2,6 @@
 //! in fewer bytes, but readers of version 1.0 refuse it.
 
 use htex_format::Asset;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Number of conditions up to which an asset is not coded unless the user asks for it. Such an asset
@@ -10,7 +9,8 @@ use serde::{Deserialize, Serialize};
 const MOST_PLAIN: usize = 8;
 
 /// Selects whether an asset is coded, i.e. stores the same texture in fewer bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Coding {
     /// Coded if the asset has more than eight conditions and coding makes the file smaller.

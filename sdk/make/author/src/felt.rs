@@ -6,7 +6,6 @@ use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
 use htex_dsp::vibrotactile::{Listener, Skin};
 use htex_format::Quantity;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::spectrum::{SpectrumRef, TextureSpectrum};
@@ -76,7 +75,8 @@ impl Felt {
 }
 
 /// How much of a difference can be felt, in a few numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FeltError {
     /// RMS difference of the levels above the detection threshold, over third-octave bands,
     /// decibels.
@@ -165,7 +165,8 @@ impl FeltError {
 /// `within_repeatability`, is the number of textures whose error is within the recording's own
 /// variation. `within_repeatability` does not show what can be felt: the less well the recordings
 /// repeat, the higher this count is.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,

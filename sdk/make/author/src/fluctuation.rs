@@ -7,7 +7,6 @@ use htex_dsp::fluctuation::{EXCESS_BANDS, Fluctuation, LEAST_S, envelope_excess}
 use htex_dsp::random_envelope::RandomEnvelope;
 use htex_format::Law;
 use htex_host::{LoadedModel, Stream};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::segments::{SegmentChoice, choose_segments};
@@ -286,7 +285,8 @@ pub(crate) fn voice_fluctuation(
 }
 
 /// How the fluctuation of a signal differs from the fluctuation of a recording.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FluctuationDifference {
     /// RMS difference of the modulation spectra, decibels. If a surface is recorded twice, this
     /// difference is at most the second value of [`SECOND_TAKES_DB`] in 95 % of cases.

@@ -20,13 +20,13 @@
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::SpectrumRef;
 
 /// Where a representation's level comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
     /// The recording's RMS in the band, so that the asset plays at the level of its recording. If

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use htex_format::Quantity;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Recording;
@@ -39,7 +38,8 @@ pub(crate) fn definition() -> String {
 }
 
 /// How segments are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
     /// Uses `Sweeps` if the recording has sweeps and their segments represent at least half of the

@@ -8,7 +8,6 @@ use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
 use htex_host::{FitCondition, FitInput};
 use htex_recording::{hertz, raised};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::blocks::{Repeatability, Span, repeatability};
@@ -25,7 +24,8 @@ const FEWEST_BINS: usize = 3;
 const GRID_TOLERANCE: f64 = 1e-3;
 
 /// Method of averaging segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Averaging {
     /// Mean of the magnitudes. This is one interpretation of "averaged the FFTs" (paper, Texture

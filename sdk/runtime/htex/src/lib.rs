@@ -40,6 +40,7 @@
 //! |---|---|---|
 //! | `wasm` | yes | models that are embedded in textures, in a sandbox |
 //! | `write` | yes | `format::Asset::write` and `to_bytes` |
+//! | `schemas` | yes | JSON Schemas of manifests and scenes: `format::manifest_schema`, `scene::scene_schema` |
 //! | `author` | | `author`: makes textures from recordings, and simulates recordings |
 //! | `library` | | `library`: files with thousands of textures; `Texture::from_library` |
 //! | `storage` | | `library::storage`: files by path or URI; `Library::open_located` |

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use htex_format::ErrorMeasure;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -15,14 +14,15 @@ pub const VERSION: &str = "1.0";
 pub(crate) const FAR_MM: f64 = 1e6;
 
 /// A scene: surfaces, the motion of the finger over them, and the output device.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct SceneFile {
     /// Version of the format, `MAJOR.MINOR`.
-    #[schemars(extend("const" = VERSION))]
+    #[cfg_attr(feature = "schemars", schemars(extend("const" = VERSION)))]
     pub htex_scene: String,
     /// The surfaces that can be touched.
-    #[schemars(length(min = 1, max = 256))]
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = 256)))]
     pub surfaces: Vec<Surface>,
     /// The motion of the finger.
     pub motion: Motion,
@@ -32,7 +32,7 @@ pub struct SceneFile {
     /// Duration, seconds. By default, a scene with a trace is as long as its trace, and a scene
     /// with another motion is endless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 1e9), extend("exclusiveMinimum" = 0)))]
     pub duration_s: Option<f64>,
     /// Seed of all random numbers. The same seed gives the same samples.
     #[serde(default)]
@@ -47,8 +47,9 @@ pub struct SceneFile {
 }
 
 /// A texture and its region.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Surface {
     /// Path of an asset, or path of a library followed by `#` and the name of one of its textures
     /// (`cloth.htexlib#woven/cotton`). Relative paths start at the scene's folder.
@@ -61,11 +62,11 @@ pub struct Surface {
     pub layer: i32,
     /// Factor that multiplies the level, 0 to 1000.
     #[serde(default = "one")]
-    #[schemars(range(min = 0, max = 1000))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1000)))]
     pub gain: f64,
     /// The representation to play: the id or short name of its model, or `auto`.
     #[serde(default = "auto")]
-    #[schemars(regex(pattern = htex_base::schema::NOT_BLANK))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = htex_base::schema::NOT_BLANK)))]
     pub representation: String,
 }
 
@@ -84,19 +85,21 @@ impl Surface {
 
 /// A rectangle. Points on the lower edges (smallest x and y) belong to the rectangle, but points on
 /// the upper edges do not.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Region {
     /// Lower and upper x, mm.
-    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
+    #[cfg_attr(feature = "schemars", schemars(inner(range(min = -FAR_MM, max = FAR_MM))))]
     pub x_mm: [f64; 2],
     /// Lower and upper y, mm.
-    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
+    #[cfg_attr(feature = "schemars", schemars(inner(range(min = -FAR_MM, max = FAR_MM))))]
     pub y_mm: [f64; 2],
 }
 
 /// The motion of the finger.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
     /// Constant speed, force and direction.
@@ -109,29 +112,31 @@ pub enum Motion {
 }
 
 /// A motion with constant speed, force and direction.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Constant {
     /// Scanning speed, mm/s.
-    #[schemars(range(min = 0, max = 1e4))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1e4)))]
     pub speed_mm_s: f64,
     /// Normal force, newtons.
-    #[schemars(range(min = 0, max = 1e3))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 1e3)))]
     pub force_n: f64,
     /// Start position, x and y, mm. Required unless the scene has a single surface and this surface
     /// has no region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
+    #[cfg_attr(feature = "schemars", schemars(inner(range(min = -FAR_MM, max = FAR_MM))))]
     pub from_mm: Option<[f64; 2]>,
     /// Direction of the motion, degrees from the x axis towards the y axis.
     #[serde(default)]
-    #[schemars(range(min = -3600, max = 3600))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -3600, max = 3600)))]
     pub direction_deg: f64,
 }
 
 /// The output device, and how the scene is mapped to it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct DeviceChoice {
     /// Id or short name of the device adapter.
     #[serde(default = "file_adapter")]
@@ -144,28 +149,28 @@ pub struct DeviceChoice {
     pub settings: BTreeMap<String, Value>,
     /// Sample rate, hertz. Default: the device's default rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 1e7), extend("exclusiveMinimum" = 0)))]
     pub rate_hz: Option<f64>,
     /// Gain for devices that play newtons or another physical quantity, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = -120, max = 120))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -120, max = 120)))]
     pub gain_db: Option<f64>,
     /// Conversion factor from the assets' quantity to the device's quantity. For example, with a
     /// factor of 0.1, a device that plays newtons plays an acceleration of 1 m/s2 as 0.1 N. The
     /// factor is required if the assets' quantity differs from the device's. Without the factor,
     /// such assets are refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-9, max = 1e9))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 1e-9, max = 1e9)))]
     pub quantity_gain: Option<f64>,
     /// Largest voltage of an electrovibration drive, volts: sqrt(2) times the paper's V_g. Default:
     /// half of the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 1e4), extend("exclusiveMinimum" = 0)))]
     pub drive_v: Option<f64>,
     /// RMS level of a preview that is played as sound, decibels relative to full scale (at most 0).
     /// Default: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = -120, max = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -120, max = 0)))]
     pub level_dbfs: Option<f64>,
     /// Whether the drive voltage or the preview level applies to the scene's loudest texture, or to
     /// a reference level.
@@ -175,11 +180,11 @@ pub struct DeviceChoice {
     /// preview level. This RMS is used if `levels` is `own`. Default: the RMS of the strongest
     /// representation of all surfaces that the finger touches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-12, max = 1e6))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 1e-12, max = 1e6)))]
     pub reference_rms: Option<f64>,
     /// Factor that multiplies all frequencies if the scene is played as sound. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.05, max = 20))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0.05, max = 20)))]
     pub pitch: Option<f64>,
     /// Path of a CSV file with the frequency response that the scene compensates: the response of
     /// the finger on the display. The columns of the file are `frequency_hz` and `magnitude`.
@@ -190,12 +195,13 @@ pub struct DeviceChoice {
     /// where the response has this level, the gain is half of the gain that would fully compensate
     /// the response. Farther below, the gain decreases.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
-    #[schemars(range(min = 0, max = 120))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 120)))]
     pub response_depth_db: f64,
 }
 
 /// How levels are normalised on devices that play sound or voltages.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
     /// The drive voltage or the preview level applies to the scene's loudest texture, in the
@@ -216,16 +222,17 @@ impl Levels {
 
 /// Limits for choosing representations. If both limits are set, the planner chooses the
 /// representation with the smallest error among the representations that meet both limits.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Budget {
     /// Maximum time that the whole chain takes per sample, nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 1e12), extend("exclusiveMinimum" = 0)))]
     pub ns_per_sample: Option<f64>,
     /// Maximum error of a representation, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(range(max = 1e12), extend("exclusiveMinimum" = 0)))]
     pub max_error_db: Option<f64>,
     /// The error measure that `max_error_db` limits and that the planner minimises.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -237,9 +244,8 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 }
 
 /// Effects of a scene, in the order of the chain.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
     /// Interpolation of parameters and level between recorded conditions as speed and force change.
@@ -321,7 +327,8 @@ impl Effect {
 }
 
 /// Whether an effect is included in the chain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
     /// The planner includes the effect if the scene requires it.

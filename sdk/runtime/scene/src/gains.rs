@@ -14,9 +14,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use htex_format::Manifest;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Level at which the adjustment of a gain starts, decibels relative to the maximum. -20 dB is a
 /// tenth of the maximum voltage. The voltage rises only when the person increases it.
@@ -31,7 +30,8 @@ pub fn factor_of_db(db: f64) -> f64 {
 const MAX_BYTES: u64 = 16 << 20;
 
 /// Key of a gain: person, texture and device.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
@@ -46,8 +46,9 @@ pub struct GainKey {
 }
 
 /// An adjusted gain.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Gain {
     /// Person, texture and device.
     #[serde(flatten)]
@@ -55,12 +56,12 @@ pub struct Gain {
     /// Name of the file that was played when the gain was adjusted. The name is only displayed.
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub drive_v: f64,
     /// RMS that is mapped to this drive voltage, in the assets' unit. If levels are not normalised,
     /// representations with another RMS are played stronger or weaker in proportion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub reference_rms: Option<f64>,
     /// Names of the texture's recordings. These names distinguish textures with the same name and
     /// author.
@@ -72,16 +73,28 @@ pub struct Gain {
 }
 
 /// The contents of a gains file.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(deny_unknown_fields))]
 pub struct Gains {
     /// All gains. No two gains have the same key.
     pub gains: Vec<Gain>,
 }
 
-/// Returns the JSON Schema of gains files: `spec/schemas/gains-1.json`.
-pub fn gains_schema() -> Value {
-    htex_base::schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
+/// Returns the keys of a gains file, as a JSON Schema.
+fn keys() -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": { "gains": { "type": "array", "items": {
+            "type": "object",
+            "additionalProperties": false,
+            "properties": {
+                "person": {}, "texture": {}, "device": {}, "profile": {}, "file": {}, "drive_v": {},
+                "reference_rms": {}, "recordings": {}, "blake3": {},
+            },
+        } } },
+    })
 }
 
 /// Returns the identifier of a texture: its name and, if present, its author, both normalised by
@@ -153,7 +166,11 @@ impl Gains {
     /// Returns an error if the contents are not a gains file. Also returns an error if they have
     /// unknown keys, which would be lost when the file is written again.
     pub fn from_json(document: Value) -> io::Result<Self> {
-        htex_base::schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
+        let unknown = htex_base::schema::unknown_keys(&keys(), &document);
+        if !unknown.is_empty() {
+            let sentences: Vec<String> = unknown.iter().map(ToString::to_string).collect();
+            return Err(io::Error::other(sentences.join("\n")));
+        }
         let gains: Self = serde_json::from_value(document)?;
         let is_sound =
             |gain: &Gain| gain.drive_v > 0.0 && gain.reference_rms.is_none_or(|rms| rms > 0.0);
@@ -209,5 +226,21 @@ impl Gain {
         own.texture.is_empty()
             && self.blake3.as_deref() == Some(blake3)
             && same == (&key.person, &key.device, &key.profile)
+    }
+}
+
+#[cfg(all(test, feature = "schemars"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keys_are_those_of_the_schema() {
+        let names = |of: &Value| {
+            let names = of["properties"].as_object().unwrap().keys();
+            names.cloned().collect::<BTreeSet<String>>()
+        };
+        let (keys, schema) = (keys(), crate::gains_schema());
+        assert_eq!(names(&keys), names(&schema));
+        assert_eq!(names(&keys["properties"]["gains"]["items"]), names(&schema["$defs"]["Gain"]));
     }
 }

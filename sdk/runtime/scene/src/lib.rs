@@ -42,6 +42,8 @@ mod representation;
 mod requirements;
 mod response;
 mod rules;
+#[cfg(feature = "schemars")]
+mod schemas;
 mod stages;
 mod trace;
 mod track;
@@ -52,17 +54,18 @@ pub use device::DeviceOverride;
 pub use error::{SceneError, SceneErrorKind};
 pub use file::SceneFile;
 pub use gains::{
-    Gain, GainKey, Gains, START_DB, factor_of_db, gains_schema, recordings_of, texture_id,
-    texture_name,
+    Gain, GainKey, Gains, START_DB, factor_of_db, recordings_of, texture_id, texture_name,
 };
 pub use limits::Limits;
 pub use load::{ALLOW_EMBEDDED, FileSource, Scene, Surroundings, validate};
 pub use output::output_name;
-pub use page::{findings_page, scene_schema};
+pub use page::findings_page;
 pub use plan::{ModelChoice, OmittedEffect, Plan, PlannedStage, plan};
 pub use render::Renderer;
 pub use response::Response;
 pub use rules::RULES;
+#[cfg(feature = "schemars")]
+pub use schemas::{gains_schema, scene_schema};
 pub use stages::StageRun;
 pub use trace::{Trace, TracePoint};
 pub use validate::read_scene;

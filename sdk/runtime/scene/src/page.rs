@@ -1,9 +1,8 @@
-//! Generates `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
+//! Generates `spec/scene-findings.md` from the code.
 
 use htex_base::finding::{colophon, rules_page};
-use serde_json::Value;
 
-use crate::{RULES, SceneFile};
+use crate::RULES;
 
 const HEAD: &str = "\
 # Findings in scenes
@@ -39,9 +38,4 @@ A player has other reasons to refuse a scene, which it finds as it plans (sectio
 /// Returns the page with all rules: `spec/scene-findings.md`.
 pub fn findings_page() -> String {
     rules_page(HEAD, RULES) + &colophon("sdk/runtime/scene/src/rules.rs")
-}
-
-/// Returns the JSON Schema of version 1.0 scenes: `spec/schemas/scene-1.json`.
-pub fn scene_schema() -> Value {
-    htex_base::schema::document::<SceneFile>("scene-1.json", "Scene of htex 1")
 }

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::finding::{Hint, Rule, plain};
@@ -14,9 +13,8 @@ use crate::finding::{Hint, Rule, plain};
 /// assert!(Severity::Error < Severity::Info);
 /// assert_eq!(Severity::Warning.to_string(), "warning");
 /// ```
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The file cannot be used.
@@ -34,16 +32,17 @@ pub enum Severity {
 /// let finding = Finding::new(FINDINGS_TRUNCATED, "", "2 more findings are not shown");
 /// assert_eq!(finding.to_string(), "FINDINGS_TRUNCATED: 2 more findings are not shown");
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Finding {
     /// Stable code of the broken rule.
-    #[schemars(regex(pattern = "^[A-Z][A-Z0-9_]*$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^[A-Z][A-Z0-9_]*$")))]
     pub code: String,
     /// Severity.
     pub severity: Severity,
     /// JSON pointer to the place in the document (for an asset, in its manifest). The pointer is
     /// empty if the finding concerns the whole file.
-    #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "^(/([^~/]|~[01])*)*$")))]
     pub pointer: String,
     /// The problem, its place, and what to do about it.
     pub message: String,
@@ -51,7 +50,7 @@ pub struct Finding {
     /// file, `#`, and a JSON pointer into the schema. Only validators that check documents against
     /// JSON Schemas set this field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(regex(pattern = "#"))]
+    #[cfg_attr(feature = "schemars", schemars(regex(pattern = "#")))]
     pub schema_rule: Option<String>,
     /// The settings that would fix the problem. A finding that is read from JSON has no hint.
     #[serde(skip)]

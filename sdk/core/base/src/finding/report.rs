@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::finding::{FINDINGS_TRUNCATED, Finding, Notice, Rule, Severity};
@@ -21,7 +20,8 @@ pub struct Report {
 
 /// The result of validating a file, in the JSON form that `htex validate` and the conformance
 /// reports write. Its schema is `spec/schemas/report-1.json`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FileReport {
     /// Name of the file.
     pub file: String,

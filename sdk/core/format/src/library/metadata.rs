@@ -1,7 +1,6 @@
 //! The metadata of a library, such as its version, description and authors.
 
 use htex_base::finding::steers;
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::library::wire::TEXT_BYTES;
@@ -18,7 +17,8 @@ pub(crate) const METADATA_BYTES: usize = 8 << 10;
 /// let metadata = LibraryMetadata { version: Some("1.2".to_owned()), ..LibraryMetadata::default() };
 /// assert!(metadata.check().is_ok());
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct LibraryMetadata {
     /// Version of the library, such as `1.2.0`.

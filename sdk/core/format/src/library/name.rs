@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use htex_base::finding::steers;
-use icu_casemap::CaseMapper;
-use icu_normalizer::DecomposingNormalizer;
+use unicase::UniCase;
+use unicode_normalization::UnicodeNormalization;
 
 use crate::library::wire::TEXT_BYTES;
 
@@ -84,9 +84,8 @@ fn of_one_file(name: &str) -> String {
     if name.is_ascii() {
         return name.to_ascii_lowercase();
     }
-    let decomposed = DecomposingNormalizer::new_nfd();
-    let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
-    decomposed.normalize(&folded(&decomposed.normalize(name))).into_owned()
+    let decomposed: String = name.nfd().collect();
+    UniCase::unicode(decomposed).to_folded_case().nfd().collect()
 }
 
 /// Returns the first 16 bytes of the hash of [`of_one_file`]. A set of names stores only these

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use htex_host::{HostError, LoadedModel, Origin, Registry};
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+#[cfg(feature = "schemars")]
+use super::OneOrMore;
 use super::setting::settings;
-use super::{OneOrMore, Preset, ReadingSettings, one_or_more};
+use super::{Preset, ReadingSettings, one_or_more};
 use crate::{AssetRequest, AuthorError, Coding, Grid, Level, ModelRequest};
 
 settings! {
@@ -41,11 +42,11 @@ settings! {
         /// Fit options, named `MODEL.NAME`. In a recipe, the options of a model can also be given
         /// as a table.
         #[serde(deserialize_with = "options")]
-        #[schemars(
+        #[cfg_attr(feature = "schemars", schemars(
             with = "BTreeMap<String, BTreeMap<String, OptionSetting>>",
             description = "Fit options: `options.ar.order = 6`.",
             extend("default" = {})
-        )]
+        ))]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub options: BTreeMap<String, OptionSetting>,
 
@@ -106,7 +107,7 @@ settings! {
         /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
         /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
         #[serde(deserialize_with = "one_or_more")]
-        #[schemars(with = "OneOrMore")]
+        #[cfg_attr(feature = "schemars", schemars(with = "OneOrMore"))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "LINES",
             display_order = 7,
@@ -119,14 +120,15 @@ settings! {
         /// Whether to refuse recordings with findings that are errors or warnings. In a recipe,
         /// this setting is one of the gates (requirements that an asset must meet). On the command
         /// line, the flag `--strict` belongs to the options for reading recordings.
-        #[schemars(skip)]
+        #[cfg_attr(feature = "schemars", schemars(skip))]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
     }
 }
 
 /// The value of a model's option: a number, or the name of a choice.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum OptionSetting {
     /// A number.

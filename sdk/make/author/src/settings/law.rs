@@ -4,7 +4,6 @@
 use std::str::FromStr;
 
 use htex_format::{Exponent, Law, MOST_EXPONENT};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Exponents that the user gives. A missing exponent is measured or assumed.
@@ -15,9 +14,10 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!((law.level_speed, law.level_force), (Some(0.4), None));
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields, try_from = "Exponents")]
-#[schemars(with = "Exponents")]
+#[cfg_attr(feature = "schemars", schemars(with = "Exponents"))]
 pub struct GivenLaw {
     /// Exponent of the speed in the law of frequencies.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,17 +31,18 @@ pub struct GivenLaw {
 }
 
 /// Exponents of the texture's law, from -4 to 4. A missing exponent is measured or assumed.
-#[derive(Default, Deserialize, JsonSchema)]
+#[derive(Default, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 struct Exponents {
     /// Exponent with which frequencies follow the speed.
-    #[schemars(range(min = -4, max = 4))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -4, max = 4)))]
     frequency_speed: Option<f64>,
     /// Exponent with which the level follows the speed.
-    #[schemars(range(min = -4, max = 4))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -4, max = 4)))]
     level_speed: Option<f64>,
     /// Exponent with which the level follows the normal force.
-    #[schemars(range(min = -4, max = 4))]
+    #[cfg_attr(feature = "schemars", schemars(range(min = -4, max = 4)))]
     level_force: Option<f64>,
 }
 

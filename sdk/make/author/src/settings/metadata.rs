@@ -13,7 +13,7 @@ settings! {
     pub struct Metadata {
         /// Name of the texture. In a recipe, `name` is not a key of the metadata. Instead, it is a
         /// key at the same level as `recordings`.
-        #[schemars(skip)]
+        #[cfg_attr(feature = "schemars", schemars(skip))]
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,
 

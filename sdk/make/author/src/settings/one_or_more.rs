@@ -1,12 +1,12 @@
 //! Settings that accept one value or a list.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
 /// One value, or several.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(untagged)]
-#[schemars(rename = "OneOrMore")]
+#[cfg_attr(feature = "schemars", schemars(rename = "OneOrMore"))]
 pub enum OneOrMore<T = String> {
     /// One value.
     One(T),

@@ -1,12 +1,12 @@
 //! Presets: named groups of settings.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{Averaging, Level, SegmentChoice};
 
 /// A name for several settings. Settings that the user gives take precedence over the preset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
     /// The paper's choices (Balasubramanian & Vardar 2026) wherever they differ from htex's

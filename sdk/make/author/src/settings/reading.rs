@@ -8,7 +8,7 @@ use super::one_or_more;
 use super::setting::settings;
 use crate::{AuthorError, Averaging, SegmentChoice, SpectrumOptions};
 use htex_recording::read_response;
-use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
+use htex_recording::{ColumnMap, ReadOptions, Tracker};
 
 settings! {
     /// Settings for reading recordings. A setting that is missing has its default value.
@@ -22,7 +22,7 @@ settings! {
     /// ```
     pub struct ReadingSettings {
         /// Sample rate of the recordings, hertz, for files that do not state it.
-        #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
+        #[cfg_attr(feature = "schemars", schemars(range(max = htex_recording::MAX_RATE_HZ), extend("exclusiveMinimum" = 0)))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "HZ",
             help = "Sample rate, Hz; needed if the file does not state it (NPY, CSV without a time \
@@ -48,10 +48,10 @@ settings! {
         /// Tracker files with the finger's motion: one file for each recording, or one file for all
         /// recordings.
         #[serde(deserialize_with = "one_or_more")]
-        #[schemars(
+        #[cfg_attr(feature = "schemars", schemars(
             with = "Option<String>",
             description = "File of a tracker with the finger's motion for each recording, a template, relative to the recipe."
-        )]
+        ))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "FILE",
             help = "Read the finger's motion from this file of a tracker, which may have its own \
@@ -82,7 +82,7 @@ settings! {
 
         /// Value of a full-scale sample in files that contain only samples (WAV, FLAC, NPY), in the
         /// quantity's unit; not 0.
-        #[schemars(extend("not" = { "const": 0 }))]
+        #[cfg_attr(feature = "schemars", schemars(extend("not" = { "const": 0 })))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "UNITS",
             help = "Value for which a full-scale sample stands in WAV, FLAC and NPY files, in the \
@@ -92,7 +92,7 @@ settings! {
 
         /// File with the frequency response of the recording setup. Spectra are divided by this
         /// response.
-        #[schemars(description = "File of the setup's response, relative to the recipe.")]
+        #[cfg_attr(feature = "schemars", schemars(description = "File of the setup's response, relative to the recipe."))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "CSV",
             help = "Divide the spectra by this frequency response of the recording setup: CSV with \
@@ -109,7 +109,7 @@ settings! {
         pub to_s: Option<f64> = "to",
 
         /// Largest number of values that may be kept in memory.
-        #[schemars(skip)]
+        #[cfg_attr(feature = "schemars", schemars(skip))]
         #[cfg_attr(feature = "clap", arg(
             long = "most-numbers",
             value_name = "N",

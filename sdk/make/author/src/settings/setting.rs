@@ -118,7 +118,8 @@ macro_rules! settings {
             $($(#[$attribute:meta])* pub $field:ident: $type:ty $(= $flag:tt)?,)*
         }
     ) => {
-        #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+        #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
         #[cfg_attr(feature = "clap", derive(clap::Args))]
         #[serde(default, deny_unknown_fields)]
         $(#[$meta])*

@@ -2,9 +2,13 @@
 //!
 //! For each condition, a block contains the stored values of each field that is not coded. Values
 //! are in little-endian order and have a fixed width, except in packed lists. The length of a list
-//! is a variable-length integer (the `varint` of bincode 2), which precedes the values of the list.
-//! After the values of all conditions, the block contains the coded fields of all conditions, which
-//! are encoded together (`coded.rs`). The layout depends only on the fields in the manifest.
+//! is a variable-length integer of bincode, which precedes the values of the list. After the values
+//! of all conditions, the block contains the coded fields of all conditions, which are encoded
+//! together (`coded.rs`). The layout depends only on the fields in the manifest. This is the only
+//! module that uses bincode.
+
+use bincode::config::{Configuration, standard};
+use bincode::{Decode, Encode};
 
 use htex_model::Descriptor;
 
@@ -12,12 +16,7 @@ use crate::coded::{self, CodeError, MOST_STEPS};
 use crate::packed::{most_steps, pack, packed_bytes, unpack};
 use crate::{Steps, StoredAs, StoredField, WriteError};
 
-/// First byte of a length that follows as a `u16`. A smaller byte is itself the length.
-const LENGTH_U16: u8 = 251;
-/// First byte of a length that follows as a `u32`.
-const LENGTH_U32: u8 = 252;
-/// First byte of a length that follows as a `u64`.
-const LENGTH_U64: u8 = 253;
+const CONFIGURATION: Configuration = standard();
 
 /// Why a parameter block cannot be decoded.
 #[derive(Debug, thiserror::Error)]
@@ -55,14 +54,14 @@ pub(crate) fn encode(
                 continue;
             }
             if field.list {
-                put_length(&mut out, values.len() as u64);
+                put(&mut out, values.len() as u64)?;
             }
             if let StoredAs::Packed(_) = field.store {
                 out.extend(pack(&steps_of(field, values)?));
                 continue;
             }
             for (index, &value) in values.iter().enumerate() {
-                put_number(&mut out, quantise(field, index, value)?);
+                put_number(&mut out, quantise(field, index, value)?)?;
             }
         }
         coded.push(steps);
@@ -348,34 +347,21 @@ fn value_of(number: Number, store: StoredAs) -> f64 {
     }
 }
 
-fn put_number(out: &mut Vec<u8>, number: Number) {
+/// Writes a number. Integers are written as raw bytes, because bincode needs three bytes for a
+/// `u16` above 250.
+fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
     match number {
-        Number::F64(x) => out.extend(x.to_le_bytes()),
-        Number::F32(x) => out.extend(x.to_le_bytes()),
-        Number::U16(q) => out.extend(q.to_le_bytes()),
-        Number::U8(q) => out.push(q),
+        Number::F64(x) => put(out, x),
+        Number::F32(x) => put(out, x),
+        Number::U16(q) => put(out, q.to_le_bytes()),
+        Number::U8(q) => put(out, q),
     }
 }
 
-/// Writes a list's length in its shortest form.
-fn put_length(out: &mut Vec<u8>, length: u64) {
-    let bytes = shortest(length);
-    match bytes {
-        3 => out.push(LENGTH_U16),
-        5 => out.push(LENGTH_U32),
-        9 => out.push(LENGTH_U64),
-        _ => return out.push(length as u8),
-    }
-    out.extend(&length.to_le_bytes()[..bytes - 1]);
-}
-
-/// Returns the length in bytes of the shortest variable-length integer for this number.
-fn shortest(length: u64) -> usize {
-    match length {
-        0..=250 => 1,
-        251..=0xFFFF => 3,
-        0x1_0000..=0xFFFF_FFFF => 5,
-        _ => 9,
+fn put(out: &mut Vec<u8>, value: impl Encode) -> Result<(), WriteError> {
+    match bincode::encode_into_std_write(value, out, CONFIGURATION) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(WriteError::Archive { problem: error.to_string() }),
     }
 }
 
@@ -500,7 +486,7 @@ impl Reader<'_> {
     /// Reads a list's length. Refuses a length for which the remaining bytes are too few.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
-        let length = self.any_length().ok_or_else(|| truncated(field, condition))?;
+        let length = self.decode::<u64>().ok_or_else(|| truncated(field, condition))?;
         // A longer code for the same length is refused, so that each block has only one encoding.
         if before - self.bytes.len() != shortest(length) {
             return Err(BlockError::Length { field: field.name.clone(), condition });
@@ -518,31 +504,20 @@ impl Reader<'_> {
 
     fn number(&mut self, store: StoredAs) -> Option<f64> {
         let number = match store {
-            StoredAs::F64 => Number::F64(f64::from_le_bytes(self.take()?)),
-            StoredAs::F32 => Number::F32(f32::from_le_bytes(self.take()?)),
-            StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
+            StoredAs::F64 => Number::F64(self.decode()?),
+            StoredAs::F32 => Number::F32(self.decode()?),
+            StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.decode()?)),
             StoredAs::U8(_) | StoredAs::Packed(_) | StoredAs::Coded(_) => {
-                Number::U8(u8::from_le_bytes(self.take()?))
+                Number::U8(self.decode()?)
             }
         };
         Some(value_of(number, store))
     }
 
-    /// Reads a length in any form.
-    fn any_length(&mut self) -> Option<u64> {
-        Some(match self.take()? {
-            [LENGTH_U16] => u16::from_le_bytes(self.take()?).into(),
-            [LENGTH_U32] => u32::from_le_bytes(self.take()?).into(),
-            [LENGTH_U64] => u64::from_le_bytes(self.take()?),
-            [byte] if byte < LENGTH_U16 => byte.into(),
-            _ => return None,
-        })
-    }
-
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (taken, rest) = self.bytes.split_first_chunk()?;
-        self.bytes = rest;
-        Some(*taken)
+    fn decode<T: Decode<()>>(&mut self) -> Option<T> {
+        let (value, used) = bincode::decode_from_slice(self.bytes, CONFIGURATION).ok()?;
+        self.bytes = self.bytes.get(used..)?;
+        Some(value)
     }
 }
 
@@ -559,6 +534,16 @@ impl StoredAs {
     }
 }
 
+/// Returns the length in bytes of bincode's shortest variable-length integer for this number.
+fn shortest(length: u64) -> usize {
+    match length {
+        0..=250 => 1,
+        251..=0xFFFF => 3,
+        0x1_0000..=0xFFFF_FFFF => 5,
+        _ => 9,
+    }
+}
+
 fn truncated(field: &StoredField, condition: usize) -> BlockError {
     BlockError::Truncated { field: field.name.clone(), condition }
 }
@@ -567,24 +552,6 @@ fn truncated(field: &StoredField, condition: usize) -> BlockError {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-
-    /// The forms of section 4 of `spec/htex-1.md`.
-    #[test]
-    fn a_length_has_its_shortest_form() {
-        for (length, form) in [
-            (250, &[0xFA][..]),
-            (251, &[0xFB, 0xFB, 0]),
-            (0xFFFF, &[0xFB, 0xFF, 0xFF]),
-            (0x1_0000, &[0xFC, 0, 0, 1, 0]),
-            (0xFFFF_FFFF, &[0xFC, 0xFF, 0xFF, 0xFF, 0xFF]),
-            (0x1_0000_0000, &[0xFD, 0, 0, 0, 0, 1, 0, 0, 0]),
-        ] {
-            let mut bytes = Vec::new();
-            put_length(&mut bytes, length);
-            assert_eq!(bytes, form);
-            assert_eq!(Reader { bytes: &bytes, limit: 0, left: 0 }.any_length(), Some(length));
-        }
-    }
 
     proptest! {
         #[test]

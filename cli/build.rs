@@ -1,9 +1,9 @@
 //! Sets the commit that `htex --version` prints: `HTEX_COMMIT` if it is set, otherwise the commit
-//! of the clone in which an optimised build is made. Development builds print `unknown`, so that a
-//! new commit does not compile them again.
+//! of the clone in which an optimised build is made. Development builds print `unknown`, so that
+//! they are not compiled again after each commit.
 //!
-//! Also tells `htex plugin new` where the sources are. Releases set `HTEX_COMMIT`, and then no
-//! folder of the build machine is stored in the program.
+//! Also tells `htex plugin new` where the sources are. If `HTEX_COMMIT` is set, as for a release,
+//! the program contains no path of the build machine.
 
 use std::path::Path;
 use std::process::Command;
@@ -26,7 +26,7 @@ fn main() {
     println!("cargo:rustc-env=HTEX_FEATURES={}", features().join(" "));
 }
 
-/// The names of the features of this build, in the order of the alphabet.
+/// The names of the features of this build, in alphabetical order.
 fn features() -> Vec<String> {
     let names = std::env::vars().filter_map(|(name, _)| {
         let name = name.strip_prefix("CARGO_FEATURE_")?.to_lowercase();

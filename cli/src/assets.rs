@@ -263,7 +263,8 @@ fn left_out_heading(measure: Measure) -> String {
     format!("  {column}: RMS  largest")
 }
 
-/// Returns the table cells under [`left_out_heading`]: the RMS and the largest of some errors.
+/// Returns the table cells under [`left_out_heading`]: the RMS of the errors, and the largest
+/// error.
 fn spread_cells(measure: Measure, errors: Vec<f64>) -> String {
     // Each cell has two spaces before it, and the second cell is as wide as `largest`.
     let width = left_out_heading(measure).len() - "    largest".len();
@@ -289,8 +290,7 @@ fn short_number(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Describes a texture's fluctuation, and how well it predicts the rest of the recordings, as far as
-/// this is known.
+/// Describes a texture's fluctuation and the errors of the fluctuation, as far as they are known.
 pub(crate) fn fluctuation_lines(fluctuation: &Fluctuation) -> Vec<String> {
     let Fluctuation { held_out_error_db, halves_error_db, .. } = fluctuation;
     let held_out = held_out_error_db.map(|db| format!("{db:.2} dB held out"));
@@ -301,7 +301,8 @@ pub(crate) fn fluctuation_lines(fluctuation: &Fluctuation) -> Vec<String> {
     [format!("fluctuation in time: {fluctuation}")].into_iter().chain(errors).collect()
 }
 
-/// Describes how much a second recording differs, from the repeatability of the first one.
+/// Describes how much a second recording would differ. `db` is the repeatability of the first
+/// recording.
 pub(crate) fn repeats(db: f64) -> String {
     let bound = REPEATABILITY_BOUND * db;
     format!(
@@ -387,12 +388,12 @@ impl AtSummary {
     }
 }
 
-/// Reads the bytes of a file. Of a file that is too large for an asset, reads one byte more than is
-/// allowed.
+/// Reads the bytes of a file. If the file is too large for an asset, reads only one byte more than
+/// is allowed.
 pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // The reader of assets refuses the additional byte. So only the reader's finding has to state
-    // the limit.
+    // With the additional byte, the reader of assets refuses the file and reports the limit, so
+    // this function need not report it.
     let most = Limits::default().file_bytes.saturating_add(1);
     File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).reading(path)?;
     Ok(bytes)

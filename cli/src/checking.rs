@@ -29,7 +29,8 @@ pub(crate) struct CheckArgs {
 }
 
 impl CheckArgs {
-    /// Returns a runner that starts this program for each check, with these arguments first.
+    /// Returns a runner that starts this program for each check. These arguments come before the
+    /// check's own arguments.
     pub(crate) fn runner(
         &self,
         arguments: impl IntoIterator<Item = std::ffi::OsString>,

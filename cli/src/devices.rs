@@ -62,7 +62,8 @@ impl DeviceArgs {
         Ok(Devices::search(builtin(), &self.search())?)
     }
 
-    /// Returns the devices without loading the libraries in folders: they can be listed only.
+    /// Returns the devices without loading the libraries in folders. The devices in these libraries
+    /// can only be listed.
     pub(crate) fn described(&self) -> Result<Devices, Failure> {
         let search = Search { only_descriptors: true, ..self.search() };
         Ok(Devices::search(builtin(), &search)?)

@@ -48,7 +48,7 @@ impl Exit {
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// An error that does not name the file that it is about, with this file.
+    /// An error whose message does not name the file, together with this file.
     #[error("{file}: {error}")]
     InFile { file: String, error: Box<Failure> },
     #[error(transparent)]

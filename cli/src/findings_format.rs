@@ -1,4 +1,4 @@
-//! Findings in formats of continuous integration: annotations of GitHub, and JUnit.
+//! Formats of findings for continuous integration: annotations of GitHub, and JUnit.
 
 use std::fmt::Write as _;
 

@@ -68,9 +68,10 @@ impl InstalledPlugin {
         Signer::of_plugin(&self.file)
     }
 
-    /// Removes the plugin with what is beside it.
+    /// Removes the plugin's file, and the signature and the description beside it.
     pub(crate) fn remove(&self) -> Result<()> {
-        // The plugin first: without it, what is beside it has no meaning.
+        // The plugin's file is removed first, because the other two files have no meaning without
+        // it.
         for path in [&self.file, &signature_path(&self.file), &description_path(&self.file)] {
             remove(path)?;
         }

@@ -34,8 +34,8 @@ impl Program {
     }
 }
 
-/// Stores the arguments of this run in a form that may be shown (without the program's name), and
-/// its program.
+/// Stores the program of this run, and its arguments without the program's name, in a form that may
+/// be shown.
 pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
     // Set for each run, because a process of the Python package may run several commands.
     *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };

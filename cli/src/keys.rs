@@ -20,7 +20,8 @@ use crate::failure::{Failure, Result};
 const TRUSTED: &str = "trusted.json";
 /// The largest list of trusted keys, bytes.
 const MOST_BYTES: u64 = 1 << 20;
-/// More than any signature has, bytes. The reader of signatures refuses what is too large.
+/// Maximum number of bytes that are read of a signature. Every valid signature has fewer bytes, and
+/// the reader of signatures refuses a larger one.
 pub(crate) const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
 
 /// The user's folder of keys: `keys` in the folder for settings.
@@ -54,7 +55,7 @@ impl KeyRing {
         })
     }
 
-    /// Changes the list of trusted keys. Other commands that change it wait.
+    /// Changes the list of trusted keys. Other commands that want to change it have to wait.
     pub(crate) fn change(
         &self,
         change: impl FnOnce(&mut TrustedKeys) -> Result<(), String>,
@@ -74,7 +75,7 @@ impl KeyRing {
         let secret = random_key().map_err(Failure::other)?;
         let public = SecretKey::from_bytes(&secret).public();
         let folder = self.private_folder()?;
-        // First the list, which checks the name, too.
+        // The list is changed first, because this also checks the name.
         self.change(|keys| keys.trust(name, public))?;
         let file = secret_file(name);
         let mut created = folder.create(Path::new(&file)).writing(self.path(&file))?;
@@ -132,7 +133,7 @@ impl KeyRing {
         Ok(SecretKey::from_bytes(&bytes))
     }
 
-    /// Returns the key of this name, which is trusted, or the key with these digits.
+    /// Returns the trusted key of this name, or the public key with these digits.
     pub(crate) fn signer(&self, name: &str) -> Result<PublicKey> {
         match self.trusted()?.named(name) {
             Some(TrustedKey { revoked: true, .. }) => {
@@ -156,7 +157,7 @@ fn is_key_name(name: &str) -> bool {
     htex_format::signing::check_key_name(name).is_ok()
 }
 
-/// Who signed a file, as its user knows them.
+/// The key that signed a file, and whether the user trusts this key.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub(crate) enum Signer {
@@ -166,12 +167,12 @@ pub(crate) enum Signer {
     Unknown { public_key: PublicKey },
     /// A key that the user no longer trusts.
     Revoked { name: String, public_key: PublicKey },
-    /// No key: the signature is malformed, of something else, or invalid.
+    /// No key: the signature is malformed or invalid, or it belongs to another content.
     Invalid { problem: String },
 }
 
 impl Signer {
-    /// Returns who made a signature, the contents of a `.sig` file, of this content.
+    /// Returns who signed this content. `signature` is the contents of a `.sig` file.
     pub(crate) fn of(ring: &KeyRing, signature: &[u8], content: &SignedContent) -> Result<Self> {
         let checked =
             FileSignature::from_json(signature).and_then(|signature| signature.check(content));
@@ -251,10 +252,11 @@ pub(crate) fn signer_at(
     Signer::of(&KeyRing::new()?, &bytes, &content(&signature)?).map(Some)
 }
 
-/// Returns what a plugin's signature should be of: its own statements, and the hash of the file.
+/// Returns the content that a plugin's signature must state: the name and the version that the
+/// signature itself states, and the hash of the plugin's file.
 pub(crate) fn plugin_content(file: &Path, signature: &FileSignature) -> Result<SignedContent> {
     let told = &signature.content;
-    // A signature of an asset is none of a plugin.
+    // A signature of an asset is not valid for a plugin.
     let kind = match told.kind {
         SignedKind::Device => SignedKind::Device,
         _ => SignedKind::Plugin,
@@ -275,7 +277,7 @@ pub(crate) fn signature_location(file: &Location) -> Result<Location> {
     Ok(Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?)
 }
 
-/// Returns the path of a file's signature: the file's with `.sig` behind it.
+/// Returns the path of a file's signature: the path of the file, followed by `.sig`.
 pub(crate) fn signature_path(file: &Path) -> PathBuf {
     let mut path = file.as_os_str().to_owned();
     path.push(".");

@@ -193,15 +193,16 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
     if verbose {
         crate::output::tell!("note: it took {:.3} s", began.elapsed().as_secs_f64());
     }
-    // Called last, because it waits as long as the display's output may have a voltage.
+    // This function is called last, because it waits until the display's output can no longer have
+    // a voltage.
     playing::stay_until_zero();
     code
 }
 
 /// Downloads the inputs of a command, runs it, and uploads its outputs.
 fn run_command(command: Command) -> Result {
-    // Also resets the meaning of signals, which an earlier command in this process may have
-    // changed.
+    // This also resets the meaning of signals, because an earlier command in this process may have
+    // changed it.
     signals::handle()?;
     check_folders()?;
     located::download()?;

@@ -59,7 +59,7 @@ struct LocalCopy {
     origin: Origin,
     local: PathBuf,
     role: Role,
-    /// The argument that brought this copy, if it brings several.
+    /// The argument from which this copy comes, if this argument stands for several copies.
     group: Option<PathBuf>,
 }
 
@@ -400,13 +400,15 @@ pub(crate) fn texture_name(path: &Path) -> Option<PathBuf> {
 /// inside JSON.
 pub(crate) fn with_uris(text: &str) -> String {
     let mut text = text.to_owned();
-    // Copies of one argument are in its folder, and come after it.
+    // If an argument stands for several copies, they are in its folder and come later in the list.
+    // So the later copies are replaced first.
     for file in copies().files.iter().rev() {
         let (copy, uri) = (file.local.display().to_string(), file.origin.to_string());
         let escaped = |text: &str| serde_json::Value::from(text).to_string();
         let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
         if text.contains(&copy) || text.contains(&in_json(&copy)) {
-            // First as a whole JSON string, in which the backslashes of a Windows path are escaped.
+            // The path is replaced first where it is a whole JSON string, because a JSON string
+            // escapes the backslashes of a Windows path.
             text = text.replace(&escaped(&copy), &escaped(&uri));
             text = text.replace(&copy, &uri);
         }
@@ -426,7 +428,8 @@ pub(crate) fn download() -> Result<()> {
         return Ok(());
     }
     let storage = Storage::from_environment()?;
-    // Checked before any download, because a wrong output would make the download useless.
+    // The outputs are checked before any download, because a wrong output would make the download
+    // useless.
     for (location, _) in outputs() {
         storage.check_writable(&location)?;
     }
@@ -442,7 +445,7 @@ pub(crate) fn download() -> Result<()> {
                 storage.download(location, create(&file.local)?, most_bytes)?;
             }
             Origin::StandardInput => {
-                // The reader of assets refuses the additional byte.
+                // With the additional byte, the reader of assets refuses the file.
                 let mut input = std::io::stdin().lock().take(most_bytes.saturating_add(1));
                 std::io::copy(&mut input, &mut create(&file.local)?).writing(&file.local)?;
             }
@@ -535,8 +538,8 @@ pub(crate) fn upload() -> Result<()> {
     Ok(())
 }
 
-/// Uploads each file of a folder, in the order of their names. Files that stand in the store under
-/// other names stay.
+/// Uploads each file of a folder, in the order of their names. Files in the store that have other
+/// names stay there.
 fn upload_folder(storage: &Storage, location: &Location, folder: &Path) -> Result<()> {
     let mut entries: Vec<_> =
         std::fs::read_dir(folder).reading(folder)?.collect::<Result<_, _>>().reading(folder)?;

@@ -77,7 +77,7 @@ impl Motions {
 
 /// Returns the newest valid reading in a queue. Returns a failed one only if there is no valid one.
 fn newest(queue: &mut Consumer<Motion>) -> MotionUpdate {
-    // Checked before the queue is emptied, so that no motion before the end is missed.
+    // The end is checked before the queue is emptied, so that no motion before the end is missed.
     let is_ended = queue.is_abandoned();
     let mut newest: Option<Motion> = None;
     while let Ok(finger) = queue.pop() {

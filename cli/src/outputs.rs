@@ -57,7 +57,8 @@ fn is_one_file((_, a): (&Path, &Metadata), (_, b): (&Path, &Metadata)) -> bool {
 
 #[cfg(not(unix))]
 fn is_one_file((a, _): (&Path, &Metadata), (b, _): (&Path, &Metadata)) -> bool {
-    // `std` has no stable number of a file here, so a hard link is not recognised.
+    // On this system, the stable part of `std` has no number that identifies a file, so a hard link
+    // is not recognised.
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 

@@ -139,7 +139,8 @@ impl Output {
             let due = Duration::from_secs_f64(self.frames as f64 / self.rate_hz);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
-        // Only the last block is shorter. If the scene ends with a full one, the next is empty.
+        // Only the last block is shorter. If the last block with samples is full, an empty block
+        // follows.
         Ok(frames == self.block.len())
     }
 

@@ -62,8 +62,8 @@ impl PluginArgs {
         self.search(&[])
     }
 
-    /// Returns the models without loading the native libraries in folders: they can be listed only.
-    /// Prints nothing.
+    /// Returns the models without loading the native libraries in folders. The models in these
+    /// libraries can only be listed. Prints nothing.
     pub(crate) fn described(&self) -> Result<Registry> {
         Ok(Registry::search(&self.places(&[]).with_only_descriptors(true))?)
     }

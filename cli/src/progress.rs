@@ -40,7 +40,7 @@ pub(crate) fn is_quiet() -> bool {
 
 /// Says after two seconds what the command waits for. If it is dropped before, it says nothing.
 pub(crate) struct Waiting {
-    // Dropped first, which ends the thread.
+    // This field is dropped first, and its drop ends the thread.
     _ended: Sender<()>,
 }
 

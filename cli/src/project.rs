@@ -35,7 +35,8 @@ impl NewProject {
     pub(crate) fn write(self, template: &Template) -> Result {
         let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
         self.check(&dir)?;
-        // Before the folder is made, so that a wrong --sdk leaves nothing behind.
+        // The sources are found before the folder is made, so that a wrong --sdk leaves no folder
+        // behind.
         let sources = self.sources(template)?;
         let own = OwnFolder::new(&dir);
         own.make_folder(Path::new("")).writing(&dir)?;

@@ -46,8 +46,8 @@ pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot
     plot
 }
 
-/// Returns the incomplete sweeps, if the segments come from sweeps, and the segments off their
-/// target.
+/// Returns the segments that are off their target. If the segments come from sweeps, also returns
+/// the incomplete sweeps.
 fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
     let cut_off = segments
         .sweeps

@@ -149,8 +149,8 @@ fn known_take(file: &Path) -> Result<Option<KnownTake>> {
     Ok(KnownTake::find(file)?)
 }
 
-/// Stands in for the settings of recordings by `htex record` and studies, in a build without these
-/// commands.
+/// In a build without `htex record` and studies, this type replaces the settings of their
+/// recordings.
 #[cfg(not(feature = "lab"))]
 struct KnownTake {
     recording: PathBuf,

@@ -152,8 +152,8 @@ fn note(quality: Option<&Quality>) -> String {
     format!("r = {r}, error {} dB RMS", value(htex_format::Measure::NineBand, 1))
 }
 
-/// Counts for each model the textures at each of their conditions: all of them, how many have an
-/// error below the difference threshold, and how many have an error within the recording's
+/// For each model, counts the pairs of a texture and one of its conditions: all pairs, the pairs
+/// with an error below the difference threshold, and the pairs with an error within the recording's
 /// repeatability.
 pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
     let mut shares: Vec<(String, FeltShare)> = Vec::new();

@@ -11,7 +11,7 @@ use crate::located;
 use crate::output::tell;
 
 /// Exit status of an interrupted program, as is customary.
-// 128 and the number of SIGINT.
+// 128 plus the number of SIGINT.
 const INTERRUPTED: i32 = 130;
 
 /// End the program at once and remove unfinished files.
@@ -57,8 +57,9 @@ fn install() -> Result<(), String> {
     ctrlc::set_handler(handler).map_err(|error| error.to_string())
 }
 
-/// From now on, a signal sets [`interrupted`]. The ramp to zero is never cut short. A second signal
-/// prints that the ramp is running, and each further one prints which voltage may remain.
+/// From now on, a signal sets [`interrupted`]. The ramp to zero is never cut short. After a second
+/// signal, the program prints that the ramp is running. After each further signal, it prints which
+/// voltage may remain.
 pub(crate) fn ask() {
     MEANING.store(IS_ASKED_FOR, Ordering::Relaxed);
 }

@@ -82,13 +82,15 @@ pub fn test(names: &[String]) -> Result<()> {
     }
     let named =
         |binding: &&Binding| names.is_empty() || names.iter().any(|name| name == binding.name);
-    // Two at a time on two cores. With three, a browser that plays sound runs dry.
+    // Two tests run at a time on two cores. With three at a time, a browser cannot render its sound
+    // in time.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)
 }
 
-/// Builds the test programs of the workspace if they share a profile with what is tested here, as in
-/// continuous integration. Browser tests mostly wait, and the last ones run alone.
+/// Builds the test programs of the workspace if they share a profile with the programs that are
+/// tested here, as in continuous integration. There is time for this build, because browser tests
+/// mostly wait and the last ones run alone.
 fn test_programs(_: &Path) -> Result<()> {
     if !Build::here()?.is_of_tests() {
         return Ok(());

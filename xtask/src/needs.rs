@@ -11,7 +11,7 @@ pub struct Need {
     pub what: &'static str,
     /// How to install it.
     pub how: &'static str,
-    /// Whether it is an error under `HTEX_REQUIRE_WASM=1` that the software is missing.
+    /// Whether it is an error if the software is missing and `HTEX_REQUIRE_WASM=1` is set.
     pub for_wasm: bool,
 }
 

@@ -175,9 +175,9 @@ impl Build {
         command.env("PATH", tools_first());
         command.env("MACOSX_DEPLOYMENT_TARGET", MACOS);
         command.env("RUSTFLAGS", self.flags());
-        // cargo-zigbuild, and maturin, which contains it, name their C compilers after the running
-        // program. With the same name and the same version of both (requirements.txt), the wheel
-        // reuses the crates that were compiled for the archive.
+        // cargo-zigbuild and maturin (which contains cargo-zigbuild) name their C compilers after
+        // the running program. If both have the same name and the same version (requirements.txt),
+        // the wheel reuses the crates that were compiled for the archive.
         command.env("CARGO_BIN_EXE_cargo-zigbuild", tools().join("cargo-zigbuild"));
     }
 

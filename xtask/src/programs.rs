@@ -45,10 +45,10 @@ fn check(command: &Command, status: ExitStatus) -> Result<()> {
     bail!("{} {}: {status}", name(command), arguments.join(" "))
 }
 
-/// Removes the variables that cargo sets for the package it runs. Otherwise build scripts that
-/// watch these variables (such as `ring`'s) would run again in a cargo that this program starts,
-/// and once more in the next cargo that the user starts. Both times, all crates that depend on them
-/// would be rebuilt, which are most of this workspace.
+/// Removes the variables that cargo sets for the package it runs. Otherwise, build scripts that
+/// watch these variables (such as `ring`'s) would run again when this program starts cargo, and
+/// once more when the user next starts cargo. Both times, all crates that depend on these build
+/// scripts would be rebuilt, i.e. most crates of this workspace.
 pub fn forget_package(command: &mut Command) -> &mut Command {
     for (name, _) in std::env::vars_os() {
         let is_of_package = ["CARGO_PKG_", "CARGO_MANIFEST_"]

@@ -13,9 +13,10 @@ pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 pub(crate) const PROFILE: &str = "module";
 
 /// The environment variable for the compiler flags of modules, and the flags. They enable 128-bit
-/// vectors, which every engine supports. The compiler does not inline large functions, and does not
-/// copy the body of a loop for several rounds, for the first round, or for vectors. (Loops that
-/// should use vectors work on arrays.) Messages of panics do not contain the folder of the crates.
+/// vectors, which every engine supports. The compiler does not inline large functions. It does not
+/// copy the body of a loop in order to unroll the loop, to treat the first round separately, or to
+/// use vectors. (Loops that should use vectors work on arrays.) Messages of panics do not contain
+/// the folder of the crates.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
     "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \

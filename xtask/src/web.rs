@@ -115,9 +115,9 @@ pub fn web(out: &Path) -> Result<()> {
     join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
 }
 
-/// Builds the modules, and returns their folder. The modules of one package are built to the same
-/// file, and replace each other, so a second build would compile them again: each process builds
-/// them once.
+/// Builds the modules, and returns their folder. All modules of a package are built to the same
+/// file, so each module replaces the one before it, and a second build would compile all of them
+/// again. Therefore, each process builds them only once.
 fn modules() -> Result<PathBuf> {
     static BUILT: Mutex<bool> = Mutex::new(false);
     let mut is_built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);

@@ -66,8 +66,8 @@ pub(crate) struct Bake {
 
     /// Also store how much the texture's strength fluctuates over time, if the asset contains this
     /// information (`htex info` shows it). The player then lets the strength of the texture
-    /// fluctuate, with the same mean level. Nobody has felt yet whether this makes a texture more
-    /// real
+    /// fluctuate, with the same mean level. It has not been tested on people whether this makes a
+    /// texture feel more real
     #[arg(long)]
     fluctuation: bool,
 
@@ -242,8 +242,8 @@ fn axes<T>(flag: &str, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<[
         match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
             Some(("speed", value)) => speed = read(value),
             Some(("force", value)) => force = read(value),
-            // An unknown or repeated key is refused below: a value is missing, or there are three
-            // parts.
+            // An unknown or repeated key is refused below, because then a value is missing or there
+            // are three parts.
             _ => {}
         }
     }
@@ -267,7 +267,7 @@ fn span(text: &str) -> Option<Vec<f64>> {
         [first, last, count] => {
             let (first, last): (f64, f64) = (first.parse().ok()?, last.parse().ok()?);
             let count: u32 = count.parse().ok()?;
-            // A count of 1 divides by zero here. The range below refuses it.
+            // If the count is 1, this divides by zero. The range below refuses it.
             let step = (last - first) / f64::from(count.checked_sub(1)?);
             (2..=32)
                 .contains(&count)

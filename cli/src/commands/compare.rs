@@ -105,7 +105,7 @@ struct OtherRecording {
     repeatability_rms_db: Option<f64>,
 }
 
-/// What is compared of a recording.
+/// The properties of a recording that are compared.
 struct Recorded {
     spectrum: TextureSpectrum,
     /// `None` if this cannot be measured, e.g. in a short recording.

@@ -45,9 +45,9 @@ pub(crate) struct Edit {
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension: Vec<String>,
 
-    /// Set how strongly the texture becomes stronger and weaker in time: standard deviations at 0.5
-    /// to 8 Hz and at 8 to 32 Hz, decibels, each from 0 to 7.97, e.g. 3,1.5. The value 0,0 removes
-    /// the fluctuation
+    /// Set how much the strength of the texture varies over time: two standard deviations in
+    /// decibels, for variations at 0.5 to 8 Hz and at 8 to 32 Hz, each from 0 to 7.97, e.g. 3,1.5.
+    /// The value 0,0 removes the fluctuation
     #[arg(long, value_name = "SLOW,FAST", allow_hyphen_values = true)]
     fluctuation: Option<GivenFluctuation>,
 

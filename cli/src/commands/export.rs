@@ -27,10 +27,10 @@ use crate::scene_sound::{Scene, is_scene};
 /// finger.
 ///
 /// The profile of an actuator describes which part of the spectrum the actuator can reproduce. The
-/// command prints how much the spectrum and the level change by the export. To measure this, it
-/// reads the written file again, simulates how the actuator plays the file, and compares the result
-/// with the samples of the texture. The command also prints the licence and the author that
-/// the written file states.
+/// command prints how much the export changes the spectrum and the level. To measure this, it reads
+/// the written file again, simulates how the actuator plays the file, and compares the result with
+/// the samples of the texture. The command also prints the licence and the author that the written
+/// file states.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The asset or the scene to export. Unlike an asset, a scene also contains the motion of the
@@ -59,7 +59,7 @@ pub(crate) struct Export {
     json: bool,
 }
 
-/// Settings. Each format uses only some of them.
+/// Settings. Each format uses only some of these settings.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]

@@ -88,7 +88,7 @@ impl Fit {
         check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         check_metadata(&self.metadata)?;
-        // Reports wrong options before it reads the recordings, which may take long.
+        // Wrong options are reported first, because reading the recordings may take long.
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;

@@ -99,7 +99,7 @@ impl Gain {
         let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
             return Err(Failure::other("ended without a match; nothing was kept"));
         };
-        // Made before `key` is moved, and printed only after the gain is stored.
+        // The text is made here, before `key` is moved, but printed only after the gain is stored.
         let text = format!(
             "kept for {} and `{}`: {} ({})\n",
             self.person,

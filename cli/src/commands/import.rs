@@ -53,7 +53,7 @@ pub(crate) struct Import {
     json: bool,
 }
 
-/// Settings. Each format uses only some of them.
+/// Settings. Each format uses only some of these settings.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]

@@ -92,7 +92,7 @@ impl Trust {
     }
 }
 
-/// No longer trust a key: what it signed is refused
+/// No longer trust a key: htex then refuses files that were signed with this key
 #[derive(Args)]
 pub(crate) struct Revoke {
     /// Name of the key
@@ -123,7 +123,7 @@ struct KeyList {
 struct KnownKey {
     name: String,
     public_key: PublicKey,
-    /// Whether its secret half is here.
+    /// Whether the user also has the secret half of the key.
     own: bool,
     revoked: bool,
 }

@@ -96,7 +96,8 @@ pub(crate) struct Build {
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 
-    /// Print findings and textures that were left out, for continuous integration
+    /// Print the findings and the textures that were left out in a format for continuous
+    /// integration
     #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["json", "dry_run"])]
     format: Option<FindingsFormat>,
 
@@ -191,7 +192,8 @@ impl Build {
             return self.announce(&build, &work);
         }
         if work.textures > 0 {
-            // Finds out whether the remote storage accepts files before hours of fitting.
+            // Checks that the remote storage accepts files. Otherwise this error would appear only
+            // after hours of fitting.
             to.try_out().map_err(for_file(&self.recipe))?;
         }
         fit(&mut build, &work).map_err(for_file(&self.recipe))?;
@@ -256,7 +258,7 @@ fn file_reports(report: &Report) -> Vec<FileReport> {
         let found = texture.asset.iter().flat_map(|asset| &asset.findings);
         let found = found.map(|finding| Finding {
             code: finding.code.clone(),
-            // Gates decide what is an error.
+            // A finding is at most a warning here, because only a missed gate is an error.
             severity: finding.severity.max(Severity::Warning),
             pointer: String::new(),
             message: format!("{}: {}", finding.recordings.join(", "), finding.message),

@@ -42,8 +42,9 @@ pub(crate) struct Make {
     #[arg(long, default_value = "lateral_force", value_parser = quantity)]
     quantity: Quantity,
 
-    /// How strongly the texture becomes stronger and weaker in time: standard deviations at 0.5 to
-    /// 8 Hz and at 8 to 32 Hz, decibels, each from 0 to 7.97, e.g. 3,1.5 [default: 0,0]
+    /// How much the strength of the texture varies over time: two standard deviations in decibels,
+    /// for variations at 0.5 to 8 Hz and at 8 to 32 Hz, each from 0 to 7.97, e.g. 3,1.5 [default:
+    /// 0,0]
     #[arg(long, value_name = "SLOW,FAST", allow_hyphen_values = true)]
     fluctuation: Option<GivenFluctuation>,
 

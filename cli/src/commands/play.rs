@@ -49,8 +49,8 @@ pub(crate) struct Play {
     texture: Option<String>,
 
     /// Let the strength of the textures fluctuate over time as in their recordings, if the assets
-    /// contain this fluctuation. The fluctuation does not change the mean level. Nobody has felt
-    /// yet whether this makes a texture more real
+    /// contain this fluctuation. The fluctuation does not change the mean level. It has not been
+    /// tested on people whether this makes a texture feel more real
     #[arg(long)]
     fluctuation: bool,
 

@@ -89,7 +89,8 @@ pub(crate) struct Check {
     #[arg(value_name = "DIR")]
     registry: PathBuf,
 
-    /// Folder with an earlier state of the registry: the key of each id must be the same as there
+    /// Folder with an earlier state of the registry. Each id must have the same key as in this
+    /// earlier state
     #[arg(long, value_name = "DIR")]
     since: Option<PathBuf>,
 
@@ -97,8 +98,8 @@ pub(crate) struct Check {
     #[arg(long, value_name = "ID")]
     only: Vec<String>,
 
-    /// Also run the checker on native libraries for this machine, which can do everything that you
-    /// can
+    /// Also run the checker on native libraries for this machine. A native library can do
+    /// everything that you can
     #[arg(long)]
     run_native: bool,
 

@@ -38,8 +38,8 @@ pub(crate) struct Render {
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// The file to write; replaces an existing file [default: the scene's name with .wav; this
-    /// default replaces no existing file]
+    /// The file to write. A file that you name is replaced if it exists [default: the scene's name
+    /// with .wav, if no such file exists]
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
@@ -67,7 +67,7 @@ impl Render {
         let rights = ready.rights();
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.scene))?;
         if self.json {
-            // Timing slows the renderer down, and only JSON has the times.
+            // The renderer measures times only for JSON output, because this slows it down.
             renderer = renderer.timed();
         }
         signals::ask();
@@ -172,8 +172,8 @@ struct RenderTarget {
     output: Output,
 }
 
-/// A temporary file for an output whose name is not Unicode, because devices take their settings as
-/// text. It is in its own folder, which only this user may write to.
+/// A temporary file for an output whose name is not Unicode. It is needed because devices take
+/// their settings as text. The file is in a new folder, to which only this user may write.
 struct Aside {
     path: PathBuf,
     _folder: tempfile::TempDir,

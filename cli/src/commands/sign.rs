@@ -17,10 +17,10 @@ use crate::output::{OutputFile, show, shown};
 
 /// Sign files with your key
 ///
-/// Writes the signature of FILE to FILE.sig, beside it. The signature states the kind and the name
-/// of what is in the file, its version if it has one, and the BLAKE3 hash of the file. The
-/// signature of a library covers all of its textures, including textures that a program downloads
-/// one at a time. To read the name of a plugin, the command loads it.
+/// Writes the signature of FILE to FILE.sig, beside it. The signature states the kind of the file
+/// (e.g. library), the name and, if there is one, the version of its content, and the BLAKE3 hash
+/// of the file. The signature of a library covers all of its textures, including textures that a
+/// program downloads one at a time. To read the name of a plugin, the command loads it.
 #[derive(Args)]
 pub(crate) struct Sign {
     /// Assets, libraries, and plugins (models or devices)
@@ -80,7 +80,7 @@ impl Display for Signatures {
     }
 }
 
-/// Returns what a signature of a local file is of.
+/// Returns the content that a signature of this local file states.
 fn content_of(file: &Path) -> Result<SignedContent> {
     let mut start = Vec::new();
     let opened = open_regular(file).and_then(|f| f.take(8).read_to_end(&mut start));

@@ -112,7 +112,7 @@ impl Simulate {
             .chain(self.truth.as_deref());
         check_outputs(outputs, [])?;
         let options = self.options()?;
-        // Computed first, so that its errors are found before anything is written.
+        // The spectra are computed first, so that errors are found before anything is written.
         let truth = self
             .truth
             .as_ref()

@@ -75,8 +75,8 @@ impl ChoiceArgs {
         Ok(Some(representation.motion(self.speed, self.force)))
     }
 
-    /// Returns a note on how the asset plays the requested motion, if the motion is outside the
-    /// recorded ones.
+    /// If the requested motion is outside the recorded speeds and forces, returns a note on how the
+    /// asset plays it.
     pub(crate) fn beyond(
         &self,
         asset: &htex::Texture,

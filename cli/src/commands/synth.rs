@@ -44,7 +44,7 @@ pub(crate) struct Synth {
 
     /// Let the strength of the texture fluctuate over time as in its recording, if the asset
     /// contains this fluctuation (`htex info` shows it). The fluctuation does not change the mean
-    /// level. Nobody has felt yet whether this makes a texture more real
+    /// level. It has not been tested on people whether this makes a texture feel more real
     #[arg(long)]
     fluctuation: bool,
 
@@ -99,7 +99,7 @@ impl Synth {
         let mut voice = representation
             .and_then(|representation| representation.voice(&options))
             .map_err(for_file(&self.asset))?;
-        // At least one sample, because a very short duration is also allowed.
+        // Even a very short duration gives at least one sample.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::from_manifest(asset.manifest());
         let wav = OutputFile::Named(&self.output);

@@ -127,8 +127,8 @@ impl Tradeoff {
             OutputFile::Inside(&own, &name).write(bytes)?;
         }
         write_file(&self.output, page(&tradeoff, &command_line()).as_bytes())?;
-        // Discarded last, so that the next run can continue from the journal if a file cannot be
-        // written.
+        // The journal is discarded last. So if a file cannot be written, the next run can continue
+        // from the journal.
         journal.discard()?;
         if !self.json {
             warn(&tradeoff.warnings);

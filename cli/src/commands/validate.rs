@@ -330,8 +330,8 @@ fn validate_recipe(path: &Path) -> Result<Report> {
     Err(Failure::Usage(format!("{file}: {words}")))
 }
 
-/// Returns the report on a descriptor, from the problem that its reader found and from its JSON
-/// Schema.
+/// Returns the report on a descriptor. It contains the problem that the descriptor's reader found,
+/// and the findings of the JSON Schema.
 fn descriptor(document: &Value, problem: Option<String>, schema: SchemaFile) -> Result<Report> {
     let mut findings = Findings::default();
     if let Some(problem) = problem {

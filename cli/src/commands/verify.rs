@@ -42,7 +42,7 @@ pub(crate) struct Verify {
 #[derive(Serialize)]
 struct Verified {
     file: String,
-    /// Whether the file is signed as asked.
+    /// Whether the file has the required signature.
     verified: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     kind: Option<SignedKind>,
@@ -103,7 +103,7 @@ fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
         None => signer.is_trusted(),
     };
     if let (true, Some(texture)) = (found.verified, texture) {
-        // The index, which is signed, has the hash of the texture.
+        // The signature covers the index, and the index contains the hash of the texture.
         let library =
             Library::open_located(&storage, &location).map_err(for_file(text.as_ref()))?;
         library.get(texture).map_err(for_file(text.as_ref()))?;
@@ -113,7 +113,7 @@ fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
     Ok(found)
 }
 
-/// Returns what the signature of a file should be of.
+/// Returns the content that the signature of a file must state.
 fn content(
     storage: &Storage,
     location: &Location,
@@ -126,7 +126,8 @@ fn content(
         (SignedKind::Plugin | SignedKind::Device, None) => {
             Err(Failure::usage(format!("{shown}: download a plugin before you verify it")))
         }
-        // Read as what the signature says, whatever the file is: nothing is loaded.
+        // The file is read as the kind that the signature states, whatever the file contains, so no
+        // plugin is loaded.
         (SignedKind::Library, _) => {
             let library = Library::open_located(storage, location).map_err(for_file(in_file))?;
             Ok(SignedContent::library(library.index()))

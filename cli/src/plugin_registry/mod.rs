@@ -59,7 +59,8 @@ impl PluginRegistry {
 
     /// Fetches a file of an entry, and its signature.
     pub(crate) fn fetch(&self, file: &PlatformFile) -> Result<Fetched> {
-        // The registry names the file, so it may lead only to the registry and to the internet.
+        // The address comes from the registry, so it may lead only to the registry itself and to
+        // the internet.
         let storage = Storage::from_environment()?.for_names_in_a_file(Some(&self.place));
         let text = &file.file;
         let location = if text.contains("://") {

@@ -34,7 +34,7 @@ pub struct Slide {
     pub force_n: f64,
 }
 
-/// The voice of an entity. The plugin adds it when the texture of the entity is loaded.
+/// The voice of an entity. The plugin adds this component when the texture of the entity is loaded.
 #[derive(Component)]
 pub struct Playing(SyncCell<Voice>);
 

@@ -7,8 +7,9 @@ use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
 
 /// Most harmonics.
 pub(crate) const HARMONICS: usize = 48;
-/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal distribution:
-/// unequal distances, so that their sum is not periodic.
+/// The lines of one harmonic are at the 10, 30, 50, 70 and 90 % quantiles of the normal
+/// distribution. The distances between these lines are unequal, so that the sum of the lines is not
+/// periodic.
 const QUANTILES: [f64; 5] = [
     -1.281_551_565_544_6,
     -0.524_400_512_708_04,
@@ -18,12 +19,12 @@ const QUANTILES: [f64; 5] = [
 ];
 /// Most lines in total.
 pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
-/// Least spread, hertz: closer lines would beat so slowly that the level of a minute is not
-/// constant.
+/// Smallest spread, hertz. Closer lines would beat so slowly that the mean level would differ from
+/// minute to minute.
 const LEAST_SPREAD_HZ: f64 = 1.0;
 
-/// The comb in a band, at the speed of the recording. Lines closer than a bin to an edge are
-/// silent, because the window would spread them outside the band.
+/// The comb in a band, at the speed of the recording. Lines that are less than a bin away from an
+/// edge of the band are silent, because the window would spread them outside the band.
 pub(crate) struct Comb<'a> {
     fundamental_hz: f64,
     jitter: f64,
@@ -76,7 +77,8 @@ impl<'a> Comb<'a> {
         }
     }
 
-    /// Magnitude of unit RMS as measured with the Hann window; the powers of lines are added.
+    /// Returns the magnitude at unit RMS, as the Hann window measures it. The powers of lines are
+    /// added.
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         let mut power = 0.0;
         self.for_each_line(|_, f, amplitude| {
@@ -92,14 +94,15 @@ impl<'a> Comb<'a> {
     }
 }
 
-/// Gain of a line at this frequency: 0 within a bin of the band's edges, and 1 from two bins on, so
-/// that lines enter and leave the band without a step when the speed changes.
+/// Gain of a line at this frequency: 0 up to one bin from an edge of the band, and 1 from two bins
+/// on. So lines enter and leave the band without a step when the speed changes.
 pub(crate) fn heard(frequency_hz: f64, band: Band) -> f64 {
     let inside_hz = (frequency_hz - band.low_hz).min(band.high_hz - frequency_hz);
     (inside_hz / GRID_HZ - 1.0).clamp(0.0, 1.0)
 }
 
-/// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.
+/// Returns the transform of the periodic Hann window, `bins` away from the middle of its main lobe.
+/// The value at the middle is 1.
 fn hann_kernel(bins: f64) -> f64 {
     let d = bins.abs();
     if d >= 2.0 {

@@ -1,5 +1,5 @@
-//! Fit of a comb to a spectrum: a harmonic sum gives the fundamental, the bins nearest to each
-//! harmonic its amplitude, and their distance from it the jitter.
+//! Fits a comb to a spectrum. A harmonic sum gives the fundamental. The bins nearest to a harmonic
+//! give its amplitude. The distance of these bins from the harmonics gives the jitter.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,16 +11,16 @@ use crate::{FORCE_N, SPEED_MM_S, Texel};
 
 /// Assumed speed of a recording of unknown speed, mm/s.
 const USUAL_SPEED_MM_S: f64 = 100.0;
-/// Least distance of harmonics that a grid of 5 Hz resolves.
+/// Smallest distance between harmonics that a grid of 5 Hz can resolve.
 const LEAST_FUNDAMENTAL_HZ: f64 = 20.0;
 /// Step of the search, hertz: a twentieth of a bin.
 const STEP_HZ: f64 = 0.25;
-/// A comb sum this close to the largest is considered equal.
+/// A comb sum that is at least this fraction of the largest comb sum counts as equal to it.
 const NEARLY: f64 = 0.85;
 /// Largest spread that can be distinguished from noise around the lines.
 const MOST_JITTER: f64 = 0.05;
-/// Variance of the power of a single line over the bins around it, Hz²: of three bins, two have
-/// half the amplitude at a distance of 5 Hz.
+/// Variance of the power of a single line over the bins around it, Hz². The line appears in three
+/// bins. The two outer bins have half the amplitude and are 5 Hz away.
 const WINDOW_VARIANCE: f64 = 2.0 * 0.25 * 25.0 / 1.5;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -127,8 +127,8 @@ impl Power<'_> {
             .sum()
     }
 
-    /// The highest frequency whose comb sum is nearly the largest: a third of the fundamental has
-    /// an equal sum.
+    /// Returns the highest frequency whose comb sum is nearly the largest. Lower frequencies can
+    /// have an equal sum, e.g. a third of the fundamental.
     fn fundamental_hz(&self) -> Option<f64> {
         let low_hz = self.frequency_hz.first()?.max(LEAST_FUNDAMENTAL_HZ);
         let steps = ((self.frequency_hz.last()? - low_hz) / STEP_HZ).max(0.0) as usize;
@@ -144,7 +144,8 @@ impl Power<'_> {
         best(&scored[last.saturating_sub(bin)..=last]).1
     }
 
-    /// The fundamental with the least squared distance of its multiples from the power around them.
+    /// Returns the fundamental whose multiples have the least squared distance from the power
+    /// around them.
     fn refined(&self, fundamental_hz: f64) -> f64 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for (i, h) in self.harmonics(fundamental_hz).iter().enumerate() {
@@ -178,8 +179,8 @@ fn higher(best: (f64, Option<f64>), (sum, f): (f64, f64)) -> (f64, Option<f64>) 
     if sum > best.0 { (sum, Some(f)) } else { best }
 }
 
-/// The relative spread that explains the distance of the power from the harmonics, without the
-/// window's part.
+/// Returns the relative spread of the lines, computed from the distance of the power from the
+/// harmonics. The part of this distance that the window causes is subtracted.
 fn jitter(harmonics: &[Harmonic], fundamental_hz: f64) -> f64 {
     let (mut variance, mut weight) = (0.0, 0.0);
     for (i, h) in harmonics.iter().enumerate() {

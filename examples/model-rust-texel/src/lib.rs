@@ -1,10 +1,10 @@
-//! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. A finger
-//! that slides over a pitch of `pitch_mm` at a speed vibrates at the fundamental `speed/pitch` and
-//! its multiples.
+//! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. The
+//! distance between two elements is `pitch_mm`. A finger that slides over them vibrates at the
+//! fundamental `speed/pitch` and its multiples.
 //!
-//! Real pitches are not exactly constant: each harmonic is a small cluster of sinusoids over the
-//! path, whose width is `jitter`. The voice receives the finger's position (`htex.motion/1`), so
-//! that the signal is a function of the position in both directions.
+//! Real pitches are not exactly constant. Therefore, each harmonic is a small cluster of sinusoids
+//! over the path, and `jitter` is the width of the cluster. The voice receives the finger's
+//! position (`htex.motion/1`), so that the signal is a function of the position in both directions.
 #![no_std]
 
 extern crate alloc;

@@ -4,7 +4,7 @@ use htex_model::Motion;
 
 /// Duration of the transition from one motion to another, seconds.
 const BLEND_S: f64 = 0.010;
-/// Least distance of a position that was set, mm, that is treated as a jump.
+/// If a new position is farther than this from the current position, mm, the finger has jumped.
 const JUMP_MM: f64 = 0.2;
 
 /// The finger on its path.
@@ -17,7 +17,8 @@ pub(crate) struct Path {
     told_step_mm: f64,
     /// Samples since then.
     age: f64,
-    /// The difference at that time, mm, and its change per sample.
+    /// Difference between the path and the set position at that time, mm, and the change of this
+    /// difference per sample.
     off_mm: f64,
     off_step_mm: f64,
     started: bool,
@@ -25,7 +26,7 @@ pub(crate) struct Path {
 
 /// The reaction of the voice to a new motion.
 pub(crate) enum Way {
-    /// None: the path reaches the position.
+    /// Do nothing, because the path reaches the new position smoothly.
     Smooth,
     /// Move by this distance, mm, before the first sample.
     Start(f64),
@@ -70,7 +71,7 @@ impl Path {
         }
     }
 
-    /// Changes the speed of a finger of unknown position, mm/s.
+    /// Sets the speed of a finger whose position is unknown, mm/s.
     pub(crate) fn set_speed(&mut self, speed_mm_s: f64) {
         let motion = Motion {
             speed_mm_s,
@@ -98,8 +99,8 @@ impl Path {
     }
 
     /// Position after a number of samples, mm: the initial differences in position and speed
-    /// decrease to 0 along a cubic Hermite curve. A jump is not part of the path, which continues
-    /// unchanged.
+    /// decrease to 0 along a cubic Hermite curve. The path does not contain jumps: before a jump,
+    /// it continues at its old speed.
     fn at_mm(&self, samples: f64) -> f64 {
         let n = self.age + samples;
         let told_mm = self.told_mm + n * self.told_step_mm;

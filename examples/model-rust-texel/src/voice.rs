@@ -58,7 +58,7 @@ struct Ridge {
     /// Cycles per mm, and the amplitude after the gain at the band's edges.
     per_mm: Ramp,
     height: Ramp,
-    /// Cycles per mm and amplitude of the parameters.
+    /// Cycles per mm and amplitude according to the parameters.
     wanted: (f64, f64),
 }
 
@@ -154,7 +154,7 @@ impl TexelVoice {
         }
     }
 
-    /// Starts the change to the level at the force.
+    /// Starts the change to the level for the current force.
     fn press(&mut self, samples: f64) {
         let force = self.told.filter(|_| self.force_n > 0.0);
         let gain = force.map_or(1.0, |m| (m.force_n / self.force_n).min(MOST_GAIN));
@@ -228,8 +228,8 @@ impl MotionVoice for TexelVoice {
     }
 }
 
-/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and bit-identical on every
-/// machine.
+/// Returns the sine of an angle of 0 to 1 cycle, computed from its series. The error is at most
+/// 1e-7, and the result is bit-identical on every machine.
 fn sine(cycles: f64) -> f64 {
     let centred = if cycles < 0.5 { cycles } else { cycles - 1.0 };
     let folded = if centred > 0.25 {

@@ -18,14 +18,14 @@ pub const MAX_RATE_HZ: f64 = 900_000.0;
 pub const MIN_RATE_HZ: f64 = 100e6 / u32::MAX as f64;
 pub const CHANNELS: [&str; 2] = ["Dev1/ao0", "Dev1/ao1"];
 
-/// Step of the clock at a call when it advances by calls, seconds.
+/// Time by which a call advances the clock if `by_calls` is set, seconds.
 const STEP_S: f64 = 0.002;
 
 #[derive(Default)]
 pub struct Card {
     /// Folder to which the output is recorded: a file for each channel, in volts, one value a line.
     pub record: Option<PathBuf>,
-    /// Whether the clock advances by calls that read the state, not in real time.
+    /// Whether each call that reads the state advances the clock, which then ignores real time.
     pub by_calls: bool,
     /// Whether the clock stands still.
     pub stands: bool,
@@ -33,9 +33,9 @@ pub struct Card {
     pub input: Option<Vec<Vec<f64>>>,
     /// The finger that feels the output and moves the inputs; in place of `input`.
     pub loopback: Option<Loopback>,
-    /// Seconds by which the next call to an input is late, when the clock advances by calls.
+    /// If `by_calls` is set: the time by which the next call to an input comes too late, seconds.
     pub late_s: f64,
-    /// Samples after which the card is removed, output or frames of input.
+    /// Number of output samples or input frames after which the card is removed.
     pub unplug_after: Option<u64>,
     tasks: BTreeMap<usize, Task>,
     made: usize,

@@ -12,9 +12,9 @@ use crate::{codes, status, with};
 enum FaultKind {
     /// The call does nothing and returns a code.
     Error(i32),
-    /// Of a write: half of the samples are taken, and the call returns a code (0: success).
+    /// A write takes only half of the samples, and returns a code (0: success).
     Short(i32),
-    /// The call takes so many milliseconds longer.
+    /// The call takes this number of milliseconds longer.
     Hang(u64),
     /// The card is removed.
     Unplug,
@@ -32,7 +32,7 @@ struct Plan {
 #[derive(Default)]
 struct State {
     plan: Option<Plan>,
-    /// The plan acts, and counts, only while there is such a file.
+    /// The plan acts, and calls are counted, only while this file exists.
     while_there: Option<PathBuf>,
     calls: BTreeMap<&'static str, u64>,
 }
@@ -57,8 +57,8 @@ pub fn plan(text: &str) {
     }
 }
 
-/// Faults act, and their calls are counted, only while there is such a file: processes that share a
-/// plan begin and end it together.
+/// Faults act, and calls are counted, only while this file exists. In this way, processes that
+/// share a plan begin and end it together.
 pub fn only_while(file: &str) {
     state(|s| s.while_there = Some(file.into()));
 }
@@ -108,7 +108,8 @@ pub fn injected(function: &'static str) -> Option<i32> {
     }
 }
 
-/// The code of a short write, if this call, which was counted, is to be one.
+/// Returns the code of a short write if the plan makes the current call a short write. The current
+/// call is already counted.
 pub fn short_write() -> Option<i32> {
     state(|s| {
         let plan = s.plan.as_ref()?;

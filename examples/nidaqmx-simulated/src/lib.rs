@@ -3,8 +3,8 @@
 //! Each function has the arguments and results that National Instruments' `NIDAQmx.h` states. The
 //! card's output is recorded; see README.md.
 //!
-//! It is a real library, loaded as NI's is: symbols, types and error codes are tested, and people
-//! without the card can play to it.
+//! It is a real library, which programs load in the same way as NI's library. So symbols, types and
+//! error codes are tested, and people without the card can play to the simulated card.
 #![allow(clippy::missing_safety_doc, clippy::too_many_arguments)] // The header states both.
 
 mod card;
@@ -301,7 +301,8 @@ pub unsafe extern "system" fn DAQmxWriteAnalogF64(
     }
     let samples = unsafe { std::slice::from_raw_parts(samples, count.max(0) as usize) };
     if let Some(code) = fault::short_write() {
-        // The behaviour of a driver whose buffer has space for a part, or for nothing.
+        // A driver behaves in this way if its buffer has space for only some of the samples, or for
+        // none.
         let taken = with(|c| c.write(task as usize, &samples[..samples.len() / 2], false));
         if !written.is_null() {
             unsafe { written.write(taken.unwrap_or(0) as i32) };

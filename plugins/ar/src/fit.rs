@@ -27,8 +27,8 @@ const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
 /// Half-power width of the narrowest resonance of a fit, hertz. Bins can neither resolve narrower
 /// resonances nor measure their level.
 const NARROWEST_HZ: f64 = GRID_HZ;
-/// Factor on the poles of the Yule–Walker method, with which the search in decibels starts. Nearer
-/// to the circle, the search would hardly move a pole.
+/// The search in decibels starts with the poles of the Yule–Walker method, multiplied by this
+/// factor. The search would hardly move a pole that is nearer to the unit circle.
 const START: f64 = 0.98;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -70,8 +70,8 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: largest * gain * level })
 }
 
-/// Returns the solution of the Yule–Walker equations, and the largest bin, to which the solution's
-/// error is relative so that no power overflows or underflows.
+/// Returns the solution of the Yule–Walker equations, and the largest bin. The solution's error is
+/// relative to the largest bin, so that no power overflows or underflows.
 fn yule_walker(input: &FitInput<'_>, order: usize, rate_hz: f64) -> (LinearPrediction, f64) {
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
     let lags: Vec<f64> = (0..=order)
@@ -84,7 +84,7 @@ fn yule_walker(input: &FitInput<'_>, order: usize, rate_hz: f64) -> (LinearPredi
 ///
 /// The Yule–Walker method minimises the mean ratio of the recorded to the fitted power, so it
 /// follows the strongest bins. Where the spectrum is 20 dB or more below its maximum, a filter of
-/// low order costs it nearly nothing if it is several decibels too strong.
+/// low order may be several decibels too strong, because this hardly increases the mean ratio.
 ///
 /// The search moves the inverse hyperbolic tangents of the reflection coefficients of a filter whose
 /// poles are then scaled by `radius`. So every trial is stable, and has no resonance narrower than
@@ -169,7 +169,7 @@ fn from_signal(
 
 /// Returns the RMS of the recording in the band.
 fn recorded_level(input: &FitInput<'_>) -> f64 {
-    // Relative to the largest bin, so that no power overflows or underflows.
+    // The powers are relative to the largest bin, so that no power overflows or underflows.
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
     largest * level_rms(&relative)

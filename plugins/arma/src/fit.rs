@@ -52,7 +52,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         [&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat();
     let filter = Filter::of_lines(&poles, &zeros, rate_hz).map_err(|_| too_close())?;
     filter.level(input.band)?;
-    // Relative to the largest bin, so that no power overflows or underflows.
+    // The magnitudes are relative to the largest bin, so that no power overflows or underflows.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
     Ok(Fit { parameters, level_rms: largest * level_rms(&relative) })
 }

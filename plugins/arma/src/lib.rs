@@ -78,8 +78,8 @@ impl Model for PolesAndZeros {
             (50.0, 1e6),
             "Rate at which the filter runs.",
         )
-        // From the rate of the Penn Haptic Texture Toolkit (1 kHz) to the highest rate of the
-        // sweep.
+        // The usual range goes from the rate of the Penn Haptic Texture Toolkit (1 kHz) to the
+        // highest rate of the sweep.
         .usual(UsualRange::linear(1000.0, 4000.0)),
     ])
     .options(&[

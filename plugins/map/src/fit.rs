@@ -20,7 +20,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         return Err(Error::cannot_fit("the spectrum is silent: there is nothing to fit"));
     }
     let known = input.condition.speed_mm_s.filter(|speed| *speed > 0.0);
-    // Rounded to 32 bits, as assets store it, because a line may be exactly on an edge of the band.
+    // The speed is rounded to 32 bits, as in an asset, because a line may be exactly on an edge of
+    // the band.
     let speed_mm_s = known.unwrap_or(USUAL_SPEED_MM_S).clamp(SPEED_MM_S.0, SPEED_MM_S.1);
     let speed_mm_s = f64::from(speed_mm_s as f32);
     let force_n = input.condition.force_n.unwrap_or(0.0).clamp(FORCE_N.0, FORCE_N.1);

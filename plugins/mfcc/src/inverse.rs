@@ -19,9 +19,10 @@ const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
 const LOG_LOG: u8 = 3;
-/// Largest exponent of frequency, up or down, with which [`LOG_LOG`] continues the power beyond the
-/// outermost apexes: 24 dB per octave. Without it, a band of zero power next to the outermost band
-/// would raise the edge of the spectrum by hundreds of decibels.
+/// Beyond the outermost apexes, [`LOG_LOG`] continues the power as a power of the frequency. The
+/// absolute value of the exponent is at most this value: 24 dB per octave. Without this limit, a
+/// band of zero power next to the outermost band would raise the edge of the spectrum by hundreds
+/// of decibels.
 const STEEPEST: f64 = 8.0;
 
 static CACHE: Lock<Vec<Arc<Inverse>>> = Lock::new(Vec::new());
@@ -134,9 +135,10 @@ fn exponentials(logarithms: &mut [f64]) -> &mut [f64] {
     logarithms
 }
 
-/// Lines between the apexes of the filters: the logarithm of power, over the logarithm of
-/// frequency. Beyond the outermost apexes, the lines continue. The other inverses give the edges of
-/// the band no power, or the power at the outermost apex, so they lose what a spectrum has at an edge.
+/// Straight lines between the apexes of the filters, on a plot of the logarithm of power over the
+/// logarithm of frequency. Beyond the outermost apexes, the lines continue. The other inverses give
+/// the edges of the band no power, or the power at the outermost apex, so they lose what a spectrum
+/// has at an edge.
 struct LogLog {
     /// Logarithm of the sum of each filter's weights; 0 for an empty filter.
     log_sums: Vec<f64>,
@@ -191,7 +193,8 @@ impl Place {
         let last = apexes.len() - 1;
         let above = apexes.partition_point(|apex| apex.1 <= at).clamp(1, last.max(1)).min(last);
         let pair = [apexes[above.saturating_sub(1)], apexes[above]];
-        // Beyond the last apex, the line begins there, so that the limit does not move this apex.
+        // Beyond the last apex, the line begins at this apex, so that the limit does not change the
+        // power at the apex.
         let [from, to] = if at > pair[1].1 { [pair[1], pair[0]] } else { pair };
         let length = to.1 - from.1;
         if length == 0.0 {

@@ -160,12 +160,13 @@ impl ShapedModel for MelCepstrum {
     }
 }
 
-/// Moves the coefficients so that the spectrum that `inverse` makes of them is as near to `power` as
-/// possible, in decibels, and has its energy.
+/// Changes the coefficients so that `inverse` converts them to a spectrum that is as near to
+/// `power` as possible, in decibels, and has the same energy.
 ///
-/// The first terms of the transform are the smoothest description of the bands' levels, but the
-/// inverse does not see only these: it has to guess the edges of the band, where the filters have
-/// no weight, and what lies within the wide filters. All coefficients together can correct both.
+/// The first terms of the transform describe the bands' levels as smoothly as possible. But the
+/// inverse also has to guess two parts of the spectrum: the edges of the band, where the filters
+/// have no weight, and the details within the wide filters. If all coefficients are fitted
+/// together, they can correct errors in both parts.
 fn fit_decibels(inverse: &Inverse, input: &FitInput<'_>, power: &[f64], cepstrum: &mut [f64]) {
     let mut energy = vec![0.0; inverse.bands()];
     let mut scratch = Scratch::new(inverse.bands());
@@ -182,9 +183,11 @@ fn fit_decibels(inverse: &Inverse, input: &FitInput<'_>, power: &[f64], cepstrum
     whole[1..].copy_from_slice(shape);
     inverse.power(&whole, &mut energy, &mut scratch, &mut fitted);
     let gain = power.iter().sum::<f64>() / fitted.iter().sum::<f64>();
-    // The first coefficient is the mean logarithm of energy, times the root of the bands' number.
+    // The first coefficient is the mean logarithm of energy, times the square root of the number of
+    // bands.
     let raise = libm::log(gain) * htex_dsp::root::sqrt(inverse.bands() as f64);
-    // Not if the spectrum has no power or too much of it, which the caller reports.
+    // The coefficient stays unchanged if the spectrum has no power or too much power. The caller
+    // reports this error.
     if raise.is_finite() {
         *level += raise;
     }
@@ -282,7 +285,7 @@ impl Curve for Spectrum {
     }
 
     fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
-        // Reserved here, so that `set` never allocates on the render thread.
+        // The memory is reserved here, so that `set` never allocates on the render thread.
         self.cepstrum.reserve(self.inverse.bands());
         self.places = Some(Places::shared(frequency_hz, key, self.band));
     }

@@ -223,7 +223,7 @@ impl Distance {
     }
 
     /// Returns the scale that determines the level. With `decibel`, it is not the best scale: next
-    /// to a line, faint points determine the best scale, but the energy is the line's.
+    /// to a line, faint points determine the best scale, but nearly all energy is in the line.
     fn level_scale(self, points: &[Peak], profile: &Profile) -> f64 {
         match self {
             Self::Magnitude => least_squares(points, profile).0,

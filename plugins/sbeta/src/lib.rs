@@ -188,8 +188,8 @@ impl Curve for Shape {
 }
 
 /// The beta density at the frequencies of a band. If a parameter is below 1, the density is
-/// infinite at the parameter's edge. There it is replaced by the density a quarter of a bin inside
-/// the band, which is close to what a bin of this width measures.
+/// infinite at the parameter's edge. There, the density a quarter of a bin inside the band replaces
+/// it. This value is close to what a bin of this width measures.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile {
     density: BetaDensity,

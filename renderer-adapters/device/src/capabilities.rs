@@ -125,7 +125,7 @@ impl Capabilities {
     pub fn check_samples(&self, samples: &[f32], first_frame: u64) -> Result<(), DeviceError> {
         // Without a limit, only NaN and infinity are refused.
         let limit = self.limit.map_or(f32::MAX, |limit| limit as f32);
-        // Negated, so that NaN counts as over the limit.
+        // The condition is negated so that NaN counts as over the limit.
         let over = |sample: &f32| !(0.0..=limit).contains(&sample.abs());
         // No early exit, so that the compiler can vectorize the loop.
         if !samples.iter().fold(false, |any, sample| any | over(sample)) {

@@ -63,7 +63,8 @@ impl DirectVoltage {
         let most_v = self.limit_v * (1.0 + ROUNDING) * frames as f64;
         let (old, new) = self.last_v.split_at(self.oldest);
         let before = new.iter().chain(old).copied();
-        // In a block longer than the window, the block's own first samples leave it again.
+        // If the block is longer than the window, the first samples of the block leave the window
+        // before the block ends.
         let leaving = before.chain(samples.iter().map(|v| (*v).into()));
         let mut sum_v = self.sum_v;
         for (at, (sample, leaves)) in samples.iter().zip(leaving).enumerate() {
@@ -86,7 +87,8 @@ impl DirectVoltage {
             self.oldest += 1;
             if self.oldest == self.last_v.len() {
                 self.oldest = 0;
-                // Computed anew once per window, so that rounding errors do not accumulate.
+                // The sum is computed anew once per window, so that rounding errors do not
+                // accumulate.
                 self.sum_v = self.last_v.iter().sum();
             }
         }
@@ -101,7 +103,7 @@ impl DirectVoltage {
     /// The direction reverses at both ends of the window, so the iterator never ends.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();
-        // Plus one window, so that the index below is never negative.
+        // One window is added, so that the index below is never negative.
         let newest = self.oldest + frames - 1;
         let period = (2 * frames).saturating_sub(2).max(1);
         (1..).map(move |back: usize| {

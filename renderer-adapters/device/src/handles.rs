@@ -47,7 +47,7 @@ impl<T> Handles<T> {
 
     pub(crate) fn remove(&self, handle: i64) -> Option<Shared<T>> {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // Not dropped here, because a drop may block and the table is locked.
+        // The device is not dropped here, because a drop may block while the table is locked.
         open.shared.remove(&handle)
     }
 }

@@ -50,8 +50,8 @@ pub(crate) enum CallFailure {
     Answer(String),
 }
 
-/// Returns a function from the library's table. Loading the library checked that all functions of
-/// its direction are present.
+/// Returns a function from the library's table. The function exists, because a library is loaded
+/// only if it has all functions of its direction.
 macro_rules! function {
     ($library:expr, $name:ident) => {
         $library.table.$name.ok_or_else(|| $library.lacks(stringify!($name)))?
@@ -68,7 +68,7 @@ impl NativeAdapter {
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
         let error = |fault, what| DeviceError::Library { library: name.clone(), fault, what };
-        // SAFETY: running a library's initialisers is what the user asked for by naming it.
+        // SAFETY: the user named the library and thereby allowed its initialisers to run.
         let library = unsafe { htex_base::native::Library::from_file(path) };
         let library = library.map_err(|reason| error(LibraryFault::Load, reason.to_string()))?;
         // SAFETY: by the ABI, the function of this name has this type.
@@ -93,8 +93,8 @@ impl NativeAdapter {
     }
 
     /// # Safety
-    /// The pointer leads to a marker and a size, and, if the marker is of this major version, to a
-    /// table of that size. Its functions have the types of the ABI.
+    /// `table` points to a marker and a size. If the marker is of this major version, `table`
+    /// points to a table of this size. Its functions have the types of the ABI.
     unsafe fn from_pointer(name: &str, table: *const DeviceTable) -> Result<Self, DeviceError> {
         let error = |fault, what| DeviceError::Library { library: name.to_owned(), fault, what };
         // SAFETY: by the caller's promise. The whole table is read only if it is of this version.
@@ -112,7 +112,8 @@ impl NativeAdapter {
             let what = format!("a table of {size} bytes; {} are needed", size_of::<DeviceTable>());
             return Err(error(LibraryFault::Function, what));
         }
-        // SAFETY: by the caller's promise, and not larger than it says.
+        // SAFETY: the caller promises that the table has the size that it states, and this size is
+        // large enough.
         let table = unsafe { *table };
         let mut library =
             Library { name: name.to_owned(), table, descriptor: Descriptor::default() };
@@ -163,7 +164,7 @@ impl NativeAdapter {
     pub fn capabilities_of(&self, lines: &str) -> Result<Capabilities, DeviceError> {
         self.check_direction(Direction::Output)?;
         let function = function!(self.library, capabilities);
-        // SAFETY: a live text, and a buffer that is live and of this length, by `Library::text`.
+        // SAFETY: the text is live, and `Library::text` passes a live buffer of this length.
         let call = |out, len| unsafe { function(lines.as_ptr(), lines.len(), out, len) };
         let capabilities: Capabilities = self.library.json("capabilities", call)?;
         capabilities.check().map_err(|error| self.library.wrong(error.to_string()))?;
@@ -257,7 +258,7 @@ impl Adapter for NativeAdapter {
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let endpoints = function!(self.library, endpoints);
-        // SAFETY: the buffer is live and of this length, by `Library::text`.
+        // SAFETY: `Library::text` passes a live buffer of this length.
         self.library.json("endpoints", |out, len| unsafe { endpoints(out, len) })
     }
 
@@ -288,7 +289,7 @@ impl Library {
     fn read_descriptor(&self) -> Result<Descriptor, DeviceError> {
         let wrong = |what: String| self.fault(LibraryFault::Descriptor, what);
         let function = function!(self, descriptor);
-        // SAFETY: the buffer is live and of this length, by `Self::text`.
+        // SAFETY: `Self::text` passes a live buffer of this length.
         let json = self.text(|out, len| unsafe { function(out, len) });
         let json = json.map_err(|failure| match failure {
             CallFailure::Code(_, text) | CallFailure::Answer(text) => {
@@ -390,7 +391,7 @@ impl OpenHandle {
     /// Reads the rate and the channels of an input.
     fn stream(&self) -> Result<InputStream, DeviceError> {
         let function = function!(self.library, stream);
-        // SAFETY: a buffer that is live and of this length, by `Library::text`.
+        // SAFETY: `Library::text` passes a live buffer of this length.
         let call = |out, len| unsafe { function(self.handle, out, len) };
         let stream: InputStream = self.library.json("stream", call)?;
         stream.check().map_err(|error| self.library.wrong(error.to_string()))?;
@@ -481,7 +482,8 @@ impl NativeOutput {
             return Ok(());
         };
         let error = match self.capabilities.check_samples(samples, self.written) {
-            // Report NaN as such. A library might accept it, and the mean would then stay NaN.
+            // Report NaN as such. A library might accept this sample, and the mean would then stay
+            // NaN.
             Err(not_a_number) if excess.mean_v.is_nan() => not_a_number,
             _ => DeviceError::DirectVoltage {
                 frame: self.written + excess.at as u64,
@@ -518,7 +520,8 @@ impl Output for NativeOutput {
         let (data, len) = (samples.as_ptr(), samples.len());
         let (library, handle) = (&self.opened.library, self.opened.handle);
         let write = function!(library, write);
-        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: the slice is live, and because of `&mut self` only one thread at a time uses the
+        // handle.
         let taken = unsafe { write(handle, data, len, wait_ms(timeout)) };
         match library.count(taken) {
             Ok(taken) if taken <= len => {
@@ -630,11 +633,13 @@ impl Input for NativeInput {
             return Err(DeviceError::Closed(self.opened.name()));
         }
         let read = function!(self.opened.library, read);
-        // There is at least one channel, because `InputStream::check` refuses none.
+        // There is at least one channel, because `InputStream::check` refuses an input without
+        // channels.
         let width = self.stream.channels.len();
         let frames = samples.len() / width;
         let (data, len) = (samples.as_mut_ptr(), frames * width);
-        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: the slice is live, and because of `&mut self` only one thread at a time uses the
+        // handle.
         let answer = unsafe { read(self.opened.handle, data, len, wait_ms(timeout)) };
         let result = self.frames_read(answer, frames, samples);
         self.has_failed = result.is_err();

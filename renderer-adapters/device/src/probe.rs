@@ -118,8 +118,8 @@ impl NativeAdapter {
         {
             // A new device for each array, because a refusal may close the device.
             let device = self.open_lines(lines, format)?;
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
-            // it.
+            // SAFETY: the device must refuse this pointer; if the pointer is misaligned, it still
+            // points into a live buffer.
             let answer = unsafe { write(device.handle, pointer, SAMPLES, 0) };
             self.check_refused("write", array, answer)?;
         }
@@ -137,7 +137,7 @@ impl NativeAdapter {
         // SAFETY: null, which must be refused.
         let answer = unsafe { status(handle, null_mut(), STATUS_NUMBERS) };
         self.check_refused("status", "a null `out`", answer)?;
-        // SAFETY: a pointer that must be refused, with a live buffer behind it.
+        // SAFETY: the device must refuse this pointer, which points into a live buffer.
         let answer = unsafe { status(handle, out.misaligned(), STATUS_NUMBERS) };
         self.check_refused("status", "a misaligned `out`", answer)?;
         for capacity in [0, 1, STATUS_NUMBERS - 1] {
@@ -164,8 +164,8 @@ impl NativeAdapter {
         for (array, pointer) in
             [("null `samples`", null_mut()), ("misaligned `samples`", samples.misaligned())]
         {
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
-            // it.
+            // SAFETY: the device must refuse this pointer; if the pointer is misaligned, it still
+            // points into a live buffer.
             self.check_refused("read", array, unsafe { read(handle, pointer, width, 0) })?;
         }
         Ok(())

@@ -206,7 +206,8 @@ impl Devices {
                 devices.notes.push(Note::LeftOut { error });
             }
         }
-        // Last, so that a library can replace a built-in adapter of the same id.
+        // The built-in adapters are added last, so that a library can replace a built-in adapter of
+        // the same id.
         devices.add_builtin(builtin);
         Ok(devices)
     }

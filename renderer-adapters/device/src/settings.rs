@@ -85,8 +85,8 @@ impl Settings {
                 values.insert(setting.name.clone(), default.clone());
             }
         }
-        // After the defaults, because a scene may only lower or raise the value that applies
-        // without it.
+        // The scene's settings are applied after the defaults, because a scene may only lower or
+        // raise the value that applies without the scene.
         let mut ignored = Vec::new();
         for (name, value) in requests.asked {
             let setting = find(descriptor, name)?;

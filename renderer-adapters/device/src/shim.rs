@@ -154,8 +154,8 @@ pub const fn table<A: Export>() -> DeviceTable {
     }
 }
 
-// The functions of the table. `crate::abi` documents each one. Their pointers and lengths are
-// arrays of the caller, by the ABI, which makes `array` and `buffer` sound.
+// The functions of the table. `crate::abi` documents each one. By the ABI, their pointers and
+// lengths describe arrays of the caller. Therefore, calling `array` and `buffer` is sound.
 
 unsafe extern "C" fn descriptor<A: Export>(out: *mut u8, capacity: usize) -> i64 {
     // SAFETY: the caller's buffer.
@@ -164,7 +164,8 @@ unsafe extern "C" fn descriptor<A: Export>(out: *mut u8, capacity: usize) -> i64
 
 unsafe extern "C" fn last_error(out: *mut u8, capacity: usize) -> i64 {
     let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
-    // SAFETY: the caller's buffer. Not by `answer`, which would replace the text.
+    // SAFETY: the caller's buffer. This call does not use `answer`, because `answer` would replace
+    // the text.
     let copied = unsafe { buffer(out, capacity) }.map(|out| copy_text(&text, out));
     copied.unwrap_or_else(|Refusal(code, _)| code as i64)
 }
@@ -315,7 +316,7 @@ unsafe fn array<'a, T>(name: &str, pointer: *const T, len: usize) -> Result<&'a 
 /// # Safety
 /// `pointer` is null, or `len` initialised values can be written there for `'a`, only by us.
 unsafe fn buffer<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], Refusal> {
-    // As for an array: a slice must not have a null pointer.
+    // The same holds as for an array: a slice must not have a null pointer.
     if len == 0 {
         return Ok(&mut []);
     }

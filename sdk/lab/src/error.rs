@@ -37,7 +37,7 @@ pub enum LabError {
     /// The source of the recorded signals, or a tracker, failed.
     #[error(transparent)]
     Source(#[from] htex_device::DeviceError),
-    /// The channels of the source do not fit the column map, or a recording cannot be read.
+    /// The column map does not match the channels of the source, or a recording cannot be read.
     #[error(transparent)]
     Read(#[from] htex_author::recording::ReadError),
     /// The source ended before the take was complete.
@@ -65,7 +65,7 @@ pub enum LabError {
         /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
-    /// None of the attempted takes kept to its target.
+    /// In every take, the motion left its target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
         attempts: u32,
@@ -115,8 +115,8 @@ pub enum LabError {
         line: usize,
         problem: String,
     },
-    /// The file of answers belongs to another version of the study. A file must not mix the results
-    /// of two versions.
+    /// The file of answers belongs to another version of the study, and a file must not mix the
+    /// results of two versions.
     #[error(
         "{}: the answers there were begun with another version: {changed}. Restore what was there (the earlier settings, in the case of a \
          device), or start anew in another folder (-o)",
@@ -219,7 +219,7 @@ pub enum LabError {
     )]
     NoHits {
         file: String,
-        /// Largest distance of the input from its median.
+        /// Largest difference of the input from its median.
         largest: f64,
         /// Noise of the input.
         noise: f64,
@@ -265,7 +265,7 @@ pub enum LabError {
         found: usize,
         /// Number that can be used.
         used: usize,
-        /// The hits or windows that were thrown out, each with its place and the reason.
+        /// The place of each hit or window that was thrown out, and the reason.
         reasons: Vec<String>,
     },
     /// A magnitude of the response is outside the range that a response file may contain.
@@ -280,7 +280,7 @@ pub enum LabError {
 }
 
 impl LabError {
-    /// Returns whether an invalid value of a setting or an argument caused the error.
+    /// Returns whether the cause of the error is an invalid value of a setting or an argument.
     pub fn is_usage(&self) -> bool {
         matches!(
             self,

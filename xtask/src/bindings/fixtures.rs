@@ -167,8 +167,8 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }
 
-/// Makes textures from the recording with the setup's response, from its forces (`sensors.csv`)
-/// with a 60 Hz tracker (`tracker.csv`), and from a free motion on grids.
+/// Makes textures in three ways: from the recording with the setup's response, from the recording's
+/// forces (`sensors.csv`) with a 60 Hz tracker (`tracker.csv`), and from a free motion on grids.
 fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     let models = ["--model", "ar,bands"];
     let compensated = ["--frf", "response.csv", "-o", "compensated.htex"];

@@ -21,7 +21,8 @@ const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
 
 const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
 
-/// Compares the files for one surface on the processors for which nothing is built.
+/// Compares the files for one surface, on the processors for which the command need not be built
+/// again.
 pub(super) fn sample(folder: &Path) -> Result<()> {
     same(folder, &SURFACES[..1], false)
 }

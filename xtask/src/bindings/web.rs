@@ -54,8 +54,8 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     conformance(&package)
 }
 
-/// Tests the package as a reader and player on some of the conformance files. All of them take
-/// minutes, since Node.js starts for each.
+/// Tests the package as a reader and player on some of the conformance files. Testing all of them
+/// would take minutes, because Node.js starts once for each file.
 fn conformance(package: &Path) -> Result<()> {
     let script = workspace().join("sdk/bindings/web/tests/conformance.mjs");
     let (script, package) = (script.display(), package.display());

@@ -16,8 +16,9 @@ use crate::places::workspace;
 use crate::platform::{Build, System};
 use crate::programs::run;
 
-/// The version of the interface, `HTEX_API_VERSION`: its major number, which is the version of the
-/// shared library, and both numbers, which are the version of the library's names.
+/// The version of the interface, `HTEX_API_VERSION`. The first text is the major number, which is
+/// the version of the shared library. The second text has both numbers and is the version of the
+/// library's names.
 const API: (&str, &str) = ("1", "1.0");
 
 /// Puts the libraries from a build folder into `lib`. With `is_merged`, the static library has a
@@ -39,8 +40,8 @@ pub(super) fn put(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> R
 fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Result<()> {
     let object = built.join("htex.o");
     let mut link = build.utility("ld");
-    // Section groups are dissolved: a linker keeps only one group of each name, and references to
-    // another library's group would then refer to a name that is local here.
+    // Section groups are dissolved, because a linker keeps only one group of each name. References
+    // to another library's group of this name would then refer to a name that is local here.
     link.args(["-r", "--gc-sections", "--force-group-allocation"]);
     // The functions for Windows paths exist only on Windows.
     for name in functions()?.iter().filter(|name| !name.ends_with("_wide")) {

@@ -23,7 +23,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns these options. If they limit neither time nor executions, limits the time to
+    /// Returns these options. If the options limit neither time nor executions, limits the time to
     /// `seconds`.
     pub(crate) fn bounded(&self, seconds: u64) -> Self {
         let is_bounded = self.seconds.is_some() || self.executions.is_some();

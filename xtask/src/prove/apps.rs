@@ -26,7 +26,7 @@ pub struct Options {
 pub(super) fn prove(options: &Options) -> Result<()> {
     let place = std::path::absolute(target().join("apps"))?;
     prepare(&place)?;
-    // One folder for all apps, so that they share the crates that they both use.
+    // Uses one folder for all apps, so that the apps share the crates that several of them use.
     let built = std::path::absolute(target().join("examples"))?;
     let variables =
         [("CARGO_TARGET_DIR", built.as_os_str()), ("CARGO_PROFILE_DEV_DEBUG", "0".as_ref())];

@@ -84,8 +84,8 @@ fn command(build: &Build, folder: &Path) -> Result<()> {
     copy(&build.built().join(name), &folder.join("bin").join(name))
 }
 
-/// Copies the page that `htex lib catalogue` fills in. It is the one that the tests of the studio
-/// have built, if there is one.
+/// Copies the page that `htex lib catalogue` fills in. If the tests of the studio have already
+/// built this page, copies their page.
 fn catalogue(folder: &Path) -> Result<()> {
     let tested = target().join("bindings/studio/page");
     let page = if tested.join(CATALOGUE).is_file() { tested } else { target().join("studio") };

@@ -97,7 +97,7 @@ fn reported(report: &Report) -> Value {
     })
 }
 
-/// Sets those fields of a struct of limits that a question names.
+/// Sets the limits that a question names, in a struct of limits.
 macro_rules! limited {
     ($limits:expr, $given:expr; $($name:ident),*) => {{
         let mut limits = $limits;
@@ -161,7 +161,7 @@ fn playing(question: &PlayingQuestion) -> Result<Value> {
         Ok(texture) => texture,
         Err(error) => return Ok(json!({ "verdict": "invalid", "problem": error.to_string() })),
     };
-    // `null` says that a case is refused.
+    // `null` means that htex refuses the case.
     let cases: Vec<Value> = question
         .cases
         .iter()
@@ -185,7 +185,8 @@ fn played(texture: &Texture, case: &PlayingCase, hz: &[f64]) -> Result<Value, ht
     }))
 }
 
-/// Returns the factor of frequencies. A model that follows the motion gets the motion instead.
+/// Returns the factor of frequencies. A model that follows the motion gets the motion instead of a
+/// factor, so its factor is 1.
 fn frequency_factor(
     representation: &Representation<'_>,
     motion: Option<Motion>,
@@ -207,7 +208,8 @@ struct BakedQuestion {
     steps: Option<Vec<Step>>,
 }
 
-/// A call of a player. Numbers are the bits of binary32, hexadecimal, because some are not finite.
+/// A call of a player. The bits of each number (binary32) are written as hexadecimal digits,
+/// because some numbers are not finite.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Step {
@@ -265,7 +267,7 @@ fn float(bits: &str) -> Result<f32> {
         .map_err(|error| Failure::Other(format!("the bits of a number: {error}")))
 }
 
-/// Returns the rule that a block breaks, as the specification names it.
+/// Returns the rule that a block breaks, by its name in the specification.
 fn rule(error: &OpenError) -> &'static str {
     match error {
         OpenError::TooShort => "too_short",

@@ -89,7 +89,8 @@ impl Run {
         if !self.class.is_empty() {
             options.classes = self.class;
         }
-        // A signal ends the readers first, which are not in this program's process group.
+        // After a signal, htex first ends the readers, because they are not in this program's
+        // process group.
         signals::ask();
         let report = run(&self.command, &options, &signals::interrupted).map_err(failed)?;
         signals::handle()?;

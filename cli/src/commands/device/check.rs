@@ -39,8 +39,8 @@ impl Check {
         if let Some(name) = &checking.reproduce {
             return checking.print_one(name, &finding(&device, name)?);
         }
-        // Read here, so that a wrong setting is reported once and not by each check. The same holds
-        // for the name of a device that does not exist.
+        // The settings are read here, so that a wrong setting or an unknown device is reported once
+        // and not by each check.
         device.settings.given()?;
         let subject = subject(&device)?;
         let mut arguments = vec!["device".into(), "check-one".into()];

@@ -68,8 +68,8 @@ impl List {
 }
 
 /// Runs the command in a second process, in which the OpenXR loader prints nothing. (A process
-/// cannot safely change its own environment.) Returns `None` if the variable [`LOADER_PRINTS`] is
-/// already set, by the user or in the second process, or if no second process can be started.
+/// cannot safely change its own environment.) Returns `None` if the user or this program has
+/// already set the variable [`LOADER_PRINTS`], or if no second process can be started.
 fn listed_quietly() -> Option<Exit> {
     if std::env::var_os(LOADER_PRINTS).is_some() {
         return None;
@@ -79,7 +79,7 @@ fn listed_quietly() -> Option<Exit> {
     Some(match command.status().ok()?.code() {
         Some(0) => Exit::SUCCESS,
         Some(code) if code == i32::from(Exit::USAGE.code()) => Exit::USAGE,
-        // Also for a process that was ended by a signal, which has no exit code.
+        // This case includes a process that a signal ended: such a process has no exit code.
         _ => Exit::FAILURE,
     })
 }

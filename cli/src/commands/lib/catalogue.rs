@@ -15,7 +15,7 @@ use crate::located;
 use crate::output::{OutputFile, show, shown};
 use crate::shared;
 
-/// The page that is filled in, in the folder of the studio.
+/// The template of the catalogue's page, a file in the folder of the studio.
 const PAGE: &str = "catalogue.html";
 /// Largest page that is read, bytes.
 const MOST_PAGE_BYTES: u64 = 64 << 20;
@@ -51,13 +51,13 @@ pub(crate) struct Catalogue {
     #[arg(long, value_name = "URL")]
     url: Option<String>,
 
-    /// Report of the build that made the library (build-report.json). The catalogue gets a page
-    /// with the textures that the build left out, and with the findings of recordings
+    /// Report of the build that made the library (build-report.json). The catalogue then also lists
+    /// the textures that the build left out, and the findings about recordings
     #[arg(long, value_name = "JSON", value_parser = located::RECORDING)]
     report: Option<PathBuf>,
 
-    /// Folder of the page that is filled in [default: $HTEX_STUDIO, or ../share/htex/studio
-    /// relative to the command]
+    /// Folder of the template of the page [default: $HTEX_STUDIO, or ../share/htex/studio relative
+    /// to the command]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
@@ -106,7 +106,7 @@ struct Written {
     page: String,
     library: String,
     textures: u64,
-    /// Whether the page contains the library, and so works from a disk.
+    /// Whether the page contains the library. Such a page also works without a web server.
     embedded: bool,
 }
 
@@ -153,7 +153,7 @@ impl Catalogue {
                 ))
             })?;
         let folder = OwnFolder::new(&self.output);
-        // The page last, so that it never names a library that is not there.
+        // The page is written last, so that it never names a missing library.
         if origin.is_none() {
             copy(&self.library, &folder, Path::new(&file_name(&self.library)))?;
         }
@@ -169,7 +169,7 @@ impl Catalogue {
     }
 }
 
-/// Fills the page in; `None` if it lacks a place.
+/// Fills in the template; `None` if the template lacks one of the places to fill in.
 fn filled(
     template: &str,
     title: &str,
@@ -183,8 +183,8 @@ fn filled(
     let connects = format!("connect-src 'self' {}", origin.unwrap_or_default());
     let mut page = template.to_owned();
     let own = "connect-src 'self'";
-    // From the last place to the first one, so that no text that is filled in stands before a place
-    // that it might name.
+    // The places are filled in from the last to the first. If a filled-in text contains the name of
+    // another place, `find` still finds the real place, because it comes earlier.
     for (place, text) in [
         ("__OPTIONS__", &options[..]),
         ("__TEXTURES__", textures),
@@ -197,7 +197,7 @@ fn filled(
     Some(page)
 }
 
-/// Copies a file into a folder, unless it is there.
+/// Copies a file into a folder, unless the file is already in this folder.
 fn copy(from: &Path, folder: &OwnFolder, name: &Path) -> Result<()> {
     let to = OutputFile::Inside(folder, name);
     if let (Ok(a), Ok(b)) = (from.canonicalize(), to.path().canonicalize())

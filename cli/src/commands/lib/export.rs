@@ -111,7 +111,7 @@ struct Row {
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     bytes: Option<usize>,
-    /// What the file says, and what it loses.
+    /// What the file states, and which parts of the texture it lacks.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     exported: Option<ExportedFile>,
     /// Why there is no file.
@@ -172,7 +172,7 @@ impl ExportAll {
         batch: &mut Batch,
     ) -> Result<Row> {
         let mut export = Export::new(format);
-        // Formats for no actuator ignore what is said of one.
+        // A format that is not made for an actuator ignores the profile.
         export.profile = profile.filter(|_| format.check_export(["profile"]).is_ok());
         export.seconds = self.seconds;
         export.file = Some(bytes);

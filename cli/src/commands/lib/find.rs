@@ -79,7 +79,8 @@ pub(crate) struct Find {
     #[arg(short, value_name = "N", default_value = "10", requires = "like")]
     n: u32,
 
-    /// List the textures whose spectra nearly equal that of a texture before them
+    /// List each texture whose spectrum nearly equals the spectrum of an earlier texture in the
+    /// library
     #[arg(long, conflicts_with = "like")]
     duplicates: bool,
 
@@ -190,7 +191,7 @@ impl Find {
 }
 
 fn near<'a>(entry: &'a Entry, distance_db: f64, of: Option<&'a str>) -> Near<'a> {
-    // As many digits as the spectra have.
+    // The distance gets as many digits as the stored spectra have.
     let distance_db = (distance_db * 100.0).round() / 100.0;
     Near { distance_db, duplicate_of: of, entry }
 }

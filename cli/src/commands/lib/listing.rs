@@ -28,7 +28,7 @@ impl Listing {
         self.add_line(entry, &row(entry))
     }
 
-    /// Adds an entry of a kind of its own: a value for JSON, and a line of the table.
+    /// Adds any kind of entry, given both as a value for JSON and as a line for the table.
     pub(super) fn add_line(&mut self, value: &impl Serialize, line: &str) -> Result<()> {
         if self.is_json {
             let json = json_line(value)?;

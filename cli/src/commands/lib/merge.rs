@@ -58,9 +58,9 @@ pub(crate) struct Merge {
 enum Conflict {
     /// None: end with an error
     Error,
-    /// The one of the library that is named first
+    /// The texture of the library that is named first
     First,
-    /// The one of the library that is named last
+    /// The texture of the library that is named last
     Last,
 }
 

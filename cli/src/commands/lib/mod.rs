@@ -85,7 +85,7 @@ fn described(before: &LibraryMetadata, given: &[String]) -> Result<LibraryMetada
 fn check_free(path: &Path, force: bool) -> Result<()> {
     let problem = match path.symlink_metadata() {
         Err(_) => return Ok(()),
-        // A link is no regular file here, so nothing is written through it.
+        // Here, a link does not count as a regular file, so nothing is written through a link.
         Ok(is) if force && is.is_file() => return Ok(()),
         Ok(_) if force => "it is there and no regular file; remove it, or give another folder",
         Ok(_) => "it is there already; give another folder, or write over it with --force",
@@ -109,8 +109,8 @@ impl LibraryArg {
         Library::open_located(&storage, &self.0).map_err(for_file(&self.shown()))
     }
 
-    /// Says after two seconds that the command waits for the library, if it is elsewhere and what is
-    /// returned still exists.
+    /// If the library is not on this machine, says after two seconds that the command waits for it,
+    /// unless the returned value was dropped before.
     fn waiting(&self) -> Result<Option<Waiting>> {
         if self.local().is_some() {
             return Ok(None);

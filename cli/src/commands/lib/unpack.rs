@@ -31,7 +31,7 @@ pub(crate) struct Unpack {
     force: bool,
 }
 
-/// Number of textures that are asked for together, which bounds the memory for their entries.
+/// Number of textures that are requested together. This number bounds the memory for their entries.
 const BATCH: usize = 4096;
 
 /// Why the textures are not read to the end.
@@ -95,8 +95,8 @@ impl Unpack {
         Ok(Exit::SUCCESS)
     }
 
-    /// Writes a texture. The reader has checked its name, so the file is inside the folder. Links
-    /// in the folder are not followed.
+    /// Writes a texture. The reader of the library has checked the texture's name, so the file is
+    /// inside the folder. Links in the folder are not followed.
     fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<()> {
         let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
         let path = self.output.join(&inside);

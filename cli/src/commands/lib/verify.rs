@@ -20,8 +20,8 @@ pub(crate) struct Verify {
     #[arg(required = true, value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 
-    /// Expected BLAKE3 hash of the library, as `htex lib info` prints it. It comes from a place
-    /// that you trust, and shows that the library is the one that was published
+    /// Expected BLAKE3 hash of the library, as `htex lib info` prints it. If you have this hash
+    /// from a place that you trust, it shows that the library is the published one
     #[arg(long, value_name = "HEX")]
     blake3: Option<String>,
 

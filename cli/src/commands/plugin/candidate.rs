@@ -95,7 +95,8 @@ impl Candidate {
         Ok(Some((Signer::of(&KeyRing::new()?, signature, &content)?, content)))
     }
 
-    /// Returns id and version, which the plugin itself says in another process, and its descriptor.
+    /// Loads the plugin in another process. Returns the id and the version that the plugin states
+    /// there, and its descriptor.
     pub(super) fn identity(&self) -> Result<(Identity, String)> {
         let copy = self.folder.path().join("described.wasm");
         let mut arguments = vec!["plugin", "export", path_text(&self.file)?];
@@ -107,7 +108,8 @@ impl Candidate {
             return Err(Failure::Other(format!("it cannot be loaded: {}", error.trim())));
         }
         let own = identity_of(if self.is_module { &copy } else { &self.file })?;
-        // A list would believe what the module carries.
+        // Lists show the descriptor that the module contains, so this descriptor must have the same
+        // id and version.
         if self.is_module && section(&self.bytes).is_some() {
             let carried = identity_of(&self.file)?.0;
             if (&carried.id, &carried.version) != (&own.0.id, &own.0.version) {

@@ -67,8 +67,8 @@ fn fuzz_time(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Converts an error: of reading, if a file cannot be read, else of wrong usage, such as an unknown
-/// check.
+/// Converts an error: to a reading error if a file cannot be read, otherwise to a usage error, e.g.
+/// for an unknown check.
 fn failed(error: CheckError) -> Failure {
     match error {
         CheckError::File { path, error } => FileError::reading(path, error).into(),

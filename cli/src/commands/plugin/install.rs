@@ -65,7 +65,7 @@ pub(crate) struct Consent {
     only_signed_by: Option<String>,
 }
 
-/// What the registry says of a candidate.
+/// What the registry states about a candidate.
 struct Promise<'a> {
     entry: &'a Entry,
     version: &'a Version,
@@ -99,7 +99,7 @@ impl Install {
     }
 }
 
-/// Installs the newest version of a registry's plugin that is wanted.
+/// Installs a plugin from a registry, in the newest version for which `wanted` returns true.
 pub(super) fn install_from(
     registry: &PluginRegistry,
     entry: &Entry,
@@ -115,7 +115,7 @@ pub(super) fn install_from(
     install(&candidate, Some(&Promise { entry, version, file }), consent)
 }
 
-/// Asks the user, or takes what was allowed beforehand.
+/// Asks the user for permission, unless a flag has already given the permission.
 fn ask(question: &str, is_allowed: bool, flag: &str) -> Result<()> {
     if is_allowed {
         return Ok(());
@@ -142,7 +142,7 @@ fn install(
     if let Some(promise) = promise {
         check_promise(candidate, promise, key)?;
     }
-    // Before the plugin runs, by the id that its signer states.
+    // The key is checked before the plugin runs, so the id comes from the signature.
     if let Some((_, content)) = &signed {
         check_key(candidate, &content.name, key, consent)?;
     }
@@ -291,8 +291,9 @@ fn write(
         let name = path.file_name().unwrap_or_default();
         OutputFile::Inside(&own, name.as_ref()).write(bytes)
     };
-    // The plugin comes last, since it is what makes the others count. A signature of a file that is
-    // replaced would be refused in between, which is safe.
+    // The plugin is written last, because the other files have no effect without it. If it replaces
+    // an older file, the new signature does not fit the older file until then, and htex refuses the
+    // older file, which is safe.
     match &candidate.signature {
         Some(signature) => put(signature_path(&path), signature)?,
         None => remove(&signature_path(&path))?,

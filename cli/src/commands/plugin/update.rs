@@ -41,7 +41,7 @@ impl Update {
             match update(&registry, &id, &self.consent) {
                 Ok(Some(installation)) => print(&installation.to_string())?,
                 Ok(None) => print(&format!("{id}: there is no newer version\n"))?,
-                // Only what is in the registry is updated if no id was given.
+                // If no id was given, only the plugins that are in the registry are updated.
                 Err(Failure::Usage(_)) if self.ids.is_empty() => {}
                 Err(error) => {
                     is_clean = false;

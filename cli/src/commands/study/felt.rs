@@ -65,7 +65,8 @@ impl FeltArgs {
         let asked = pairs("--source-set", &self.source_settings)?;
         let given = paced(&name, asked.clone(), is_fast);
         let devices = devices.devices_quietly()?;
-        // Opened here once, so that a wrong source or map is found before the session.
+        // The source is opened here once, so that a wrong source or map is found before the
+        // session.
         let source = devices.open_input(&name, None, &given)?;
         let signals = self.input.signals(&name, &*source)?;
         warn(signals.warnings());

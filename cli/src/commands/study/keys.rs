@@ -74,7 +74,7 @@ impl Keys {
         let before = tcgetattr(stdin()).ok()?;
         let mut single = before.clone();
         single.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
-        // A read returns as soon as there is at least one byte, with all bytes that are there.
+        // A read waits for at least one byte, and then returns all bytes that have arrived.
         single.special_codes[SpecialCodeIndex::VMIN] = 1;
         single.special_codes[SpecialCodeIndex::VTIME] = 0;
         tcsetattr(stdin(), OptionalActions::Now, &single).ok()?;
@@ -100,7 +100,8 @@ impl Keys {
     pub(super) fn forget(&mut self) {
         while let Some(press) = self.pressed() {
             if press == Press::End {
-                // The end comes only once and must not be forgotten. `next` looks for it here.
+                // The end of the input comes only once, so it must not be discarded. `next` looks
+                // for it here.
                 self.last = Some((Press::End, Instant::now()));
                 break;
             }
@@ -115,7 +116,7 @@ impl Keys {
             return Some(Press::End);
         }
         loop {
-            // Read first, because `pressed` replaces `self.last`.
+            // This is read first, because `pressed` replaces `self.last`.
             let before = self.last;
             let press = self.pressed()?;
             let is_held = before.is_some_and(|(own, at)| own == press && at.elapsed() < HELD);
@@ -164,7 +165,7 @@ fn presses_of(bytes: &[u8]) -> Vec<Press> {
             b' '..=b'~' | b'\r' | b'\n' => Press::Char(char::from(*first)),
             _ => Press::Other,
         });
-        // After an unknown escape, the following bytes belong to it.
+        // The bytes after an unknown escape belong to this escape.
         rest = match first {
             0x1b => &[],
             _ => &rest[1..],

@@ -79,7 +79,7 @@ impl StudyRig<'_> {
             let mut settings = descriptor.settings.iter();
             settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
         };
-        // Only with live motion does a participant notice how long samples wait. In other studies,
+        // A participant notices how long samples wait only if the motion is live. In other studies,
         // the buffer may be made longer during a session, e.g. after it ran dry.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
@@ -134,7 +134,7 @@ impl Rig for StudyRig<'_> {
     type Error = Failure;
 
     fn play(&mut self, stimulus: &Stimulus, ends: &mut dyn FnMut() -> bool) -> Result<Playback> {
-        // Taken out, because `play_with` borrows the whole rig.
+        // `felt` is taken out of the rig, because `play_with` borrows the whole rig.
         let mut felt = self.felt.take();
         self.playing = None;
         let played = self.play_with(felt.as_mut(), stimulus, ends);
@@ -208,7 +208,7 @@ impl StudyRig<'_> {
         loop {
             let goes_on = output.step(&mut renderer)?;
             if let Some((_, meter)) = &mut self.playing {
-                // Also for the last block, which may be shorter.
+                // The level also includes the last block, which may be shorter.
                 meter.push(output.last_block());
             }
             if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {

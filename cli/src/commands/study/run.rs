@@ -102,7 +102,7 @@ impl Run {
     /// Refuses a study that would fail in the middle of a session.
     fn check_files(&self, study: &Study) -> Result<()> {
         let mut findings = Vec::new();
-        // Stands in for the files of the trials, whose names are not known yet.
+        // This path stands for the files of the trials. Their names are not known yet.
         let device = self.choice.to_override(Some(&self.output.join("trial.wav")), false)?;
         let loader = self.with.loader()?;
         check_files(study, &self.study, &loader.around(), &device, &mut findings);

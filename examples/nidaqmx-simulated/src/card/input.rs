@@ -78,8 +78,8 @@ impl Card {
         }
     }
 
-    /// Lets the clock sample what is due. More unread frames than the buffer holds are an error for
-    /// good.
+    /// Lets the clock sample what is due. If more frames are unread than the buffer can hold, this
+    /// call and all later calls fail.
     fn sample(&mut self, id: usize, step_s: f64) -> Answer<()> {
         self.plugged()?;
         let (by_calls, late_s) = (self.by_calls, std::mem::take(&mut self.late_s));

@@ -1,5 +1,5 @@
-//! A finger between the first output and the inputs, which may be in two processes: the friction of
-//! electrovibration follows the square of the voltage.
+//! A finger between the first output and the inputs. The output and the inputs may be in two
+//! processes. As in electrovibration, the friction is proportional to the square of the voltage.
 //!
 //! The output appends what it puts out to a file, in chunks: the rate (f64, hertz; 0 without a
 //! clock), the number of samples (u64) and the samples (f64, volts), all little-endian.
@@ -13,11 +13,11 @@ const HEAD: usize = 16;
 
 pub struct Loopback {
     file: PathBuf,
-    /// Bytes of the file that were understood.
+    /// Number of bytes of the file that have been read as complete chunks.
     place: u64,
     /// Rate of the output, hertz.
     rate_hz: f64,
-    /// What was put out since the beginning.
+    /// The voltages that were put out since the beginning.
     volts: Vec<f64>,
     has_ended: bool,
 }
@@ -53,9 +53,10 @@ impl Loopback {
         said(&self.file, file.and_then(|mut file| file.write_all(&bytes)));
     }
 
-    /// Frames at a rate that were there by now, counted from the first sample of the output, or
-    /// with `from_signal` from the first voltage that is not zero; `None` after the output has
-    /// ended, when the inputs have a clock of their own.
+    /// Returns the number of frames at this rate that have arrived so far. They are counted from
+    /// the first sample of the output, or with `from_signal` from the first voltage that is not
+    /// zero. Returns `None` after the output has ended: from then on, the inputs have a clock of
+    /// their own.
     pub fn frames(&mut self, rate_hz: f64, from_signal: bool) -> Option<u64> {
         let heard = self.hear(from_signal);
         said(&self.file, heard);
@@ -63,7 +64,7 @@ impl Loopback {
         (!self.has_ended).then_some(frames)
     }
 
-    /// The voltage at an input: the square of the output's, 1 V for 1 V.
+    /// Returns the voltage at an input: the square of the output's voltage, so that 1 V gives 1 V.
     pub fn volts(&self, frame: u64, rate_hz: f64) -> f64 {
         let at = (frame as f64 * self.rate_hz / rate_hz) as usize;
         self.volts.get(at).map_or(0.0, |v| v * v)
@@ -100,7 +101,8 @@ impl Loopback {
     }
 }
 
-/// Rate and samples of the first chunk, if it is whole, and what follows it.
+/// Returns the rate and the samples of the first chunk, and the bytes after it. Returns `None` if
+/// the chunk is not complete.
 fn chunk(bytes: &[u8]) -> Option<(f64, Vec<f64>, &[u8])> {
     let number = |bytes: &[u8]| bytes.try_into().ok().map(f64::from_le_bytes);
     let rate_hz = number(bytes.get(..8)?)?;

@@ -25,8 +25,8 @@ impl Listener {
         Self { ring, heard }
     }
 
-    /// Takes all of these interleaved frames. Once frames have not fitted into the ring buffer,
-    /// takes no more frames.
+    /// Takes all of these interleaved frames. If frames do not fit into the ring buffer, they are
+    /// lost, and no more frames are taken from then on.
     pub(crate) fn push<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
         if self.ring.slots() < samples.len() {
             self.heard.lost.store(true, Ordering::Release);

@@ -63,7 +63,8 @@ impl Sound {
             Channels::All => vec![1.0; usize::from(config.channels)],
             Channels::Factors(factors) => factors.to_vec(),
         };
-        // At least two blocks, so that one can be written while the other plays.
+        // The buffer has space for at least two blocks, so that one can be written while the other
+        // plays.
         let buffered = (buffer_s * format.rate_hz) as usize;
         let (ring, samples) =
             RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));

@@ -91,7 +91,7 @@ fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
         let (Some(first), Some(last)) = (number(first), number(last)) else {
             return Err(wrong());
         };
-        // Checked before the range is expanded, so that `ai0:999999999` takes no memory.
+        // The range is checked before it is expanded, so that `ai0:999999999` takes no memory.
         if card.is_empty() || last < first || last - first >= MOST_CHANNELS {
             return Err(wrong());
         }

@@ -9,8 +9,8 @@ use crate::daq::driver::Driver;
 /// Default rate, hertz: the rate at which the paper records forces. The paper states no output
 /// rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
-/// Lowest rate, hertz. Frequencies of textures reach 1000 Hz. At this rate, a control block of
-/// eight frames takes 8 ms. At much lower rates it would take seconds.
+/// Lowest rate, hertz. Frequencies of textures reach 1000 Hz. At the lowest rate, a control block
+/// of eight frames takes 8 ms. At much lower rates it would take seconds.
 const LOWEST_RATE_HZ: f64 = 1_000.0;
 /// Maximum duration of buffer and ramp together, milliseconds. This limit ensures that the output
 /// is at zero within half a second after the player is killed.

@@ -117,7 +117,7 @@ impl Session {
         if self.task.is_none() {
             self.start(&volts)?;
         }
-        // Checked after the start, because the lead also counts for the mean.
+        // The mean is checked after the start, because it also includes the lead.
         self.check_direct(&volts)?;
         let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;
@@ -304,7 +304,7 @@ impl Session {
         // The lead must be in the buffer before the clock starts. Otherwise the buffer would run
         // dry at once.
         task.write(lead, false)?;
-        // Recorded before the start, because the start itself may hang.
+        // The task is recorded before the start, because the start itself may hang.
         self.emergency.runs(Some(task.stopper()));
         let started = task.start();
         // The task is cleared on return, so no other thread may use its handle then.

@@ -50,8 +50,8 @@ impl Watchdog {
             // Nothing is ever sent: the thread ends when the sender is dropped.
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
                 let error = look(&shared, watches);
-                // The watchdog prints the error. A thread whose call hangs cannot report it, and
-                // neither can a writer that makes no more calls.
+                // The watchdog prints the error. The watchdog prints the error, because neither a
+                // thread whose call hangs nor a writer that makes no more calls can report it.
                 if let Some(error) = error.filter(|_| !told) {
                     say(&error);
                     told = true;

@@ -157,7 +157,7 @@ impl Envelopes {
     }
 
     fn send(&mut self) -> Result<(), String> {
-        // SAFETY: as many points as said, which last until the call returns.
+        // SAFETY: the number of points is correct, and the points live until the call returns.
         let code =
             unsafe { (self.vibrator.play)(self.waiting.as_ptr(), self.waiting.len() as u32) };
         self.waiting.clear();

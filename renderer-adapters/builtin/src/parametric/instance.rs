@@ -77,7 +77,8 @@ impl Instance {
         let mut parametric =
             SystemProperties { ty: SYSTEM_PROPERTIES, next: null_mut(), is_supported: xr::FALSE };
         let mut properties = xr::SystemProperties::out((&raw mut parametric).cast());
-        // SAFETY: a chain of two structures of the registry, in which the runtime writes.
+        // SAFETY: the runtime writes into a chain of two structures, which are laid out as the
+        // registry defines them.
         let code = unsafe {
             (self.table.get_system_properties)(self.handle, self.system, properties.as_mut_ptr())
         };
@@ -114,7 +115,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
         )
     }?;
     let mut count = 0;
-    // SAFETY: no places, so that only the count is written.
+    // SAFETY: the array has no elements, so the call writes only the count.
     done(call, unsafe { enumerate(null(), 0, &mut count, null_mut()) })?;
     let empty = xr::ExtensionProperties {
         ty: xr::ExtensionProperties::TYPE,
@@ -123,7 +124,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
         extension_version: 0,
     };
     let mut all = vec![empty; count as usize];
-    // SAFETY: there are as many places as said.
+    // SAFETY: the array has as many elements as the call states.
     done(call, unsafe { enumerate(null(), count, &mut count, all.as_mut_ptr()) })?;
     // The runtime may write fewer extensions than it announced.
     all.truncate(count as usize);

@@ -119,7 +119,8 @@ impl Session {
         // structure follows it.
         let code = unsafe { (instance.table.create_session)(instance.handle, &info, &mut handle) };
         done("xrCreateSession", code)?;
-        // Built before the next calls, so that `drop` destroys the session if one of them fails.
+        // `Self` is built before the next calls, so that `drop` destroys the session if one of
+        // these calls fails.
         let mut session = Self {
             handle,
             action: xr::Action::NULL,
@@ -268,8 +269,8 @@ impl Session {
             }
             done("xrPollEvent", code)?;
             if event.ty == xr::EventDataSessionStateChanged::TYPE {
-                // SAFETY: an event of this type is this structure, for which the buffer has space
-                // and alignment.
+                // SAFETY: an event of this type has the layout of this structure, and the buffer is
+                // large enough and aligned for it.
                 let changed =
                     unsafe { (&raw const event).cast::<xr::EventDataSessionStateChanged>().read() };
                 return Ok(Some(changed.state));
@@ -368,7 +369,7 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // SAFETY: the session is not used afterwards; its action goes with the instance.
+        // SAFETY: the session is not used afterwards; its action is destroyed with the instance.
         unsafe { (self.instance.table.destroy_session)(self.handle) };
     }
 }

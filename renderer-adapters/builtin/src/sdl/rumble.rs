@@ -21,8 +21,8 @@ pub(crate) struct Rumble {
     _claim: Claim,
 }
 
-// SAFETY: SDL's functions of joysticks lock, and may be called from any thread; one thread at a
-// time has this.
+// SAFETY: SDL's joystick functions take a lock, so any thread may call them; only one thread at a
+// time has this value.
 unsafe impl Send for Rumble {}
 
 impl Rumble {
@@ -34,7 +34,8 @@ impl Rumble {
     ) -> Result<Self, DeviceError> {
         let claim = Claim::reserve(["sdl", &driver.path, &pad.instance.to_string()], &pad.name)?;
         let sdl = &driver.table;
-        // SAFETY: an index of the list; one that is not there any more is refused.
+        // SAFETY: the index comes from the list of gamepads; SDL refuses an index that is no longer
+        // in the list.
         let handle = unsafe { (sdl.open)(pad.index) };
         if handle.is_null() {
             let reason = sdl.reason();

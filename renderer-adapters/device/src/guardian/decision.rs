@@ -402,7 +402,7 @@ impl Player {
 
     fn next_by(&self) -> By {
         match self.last {
-            // No second thread while one may still hang.
+            // No second thread starts while the first one may still hang.
             By::Process if self.own.is_none() => By::Player,
             _ => By::Process,
         }

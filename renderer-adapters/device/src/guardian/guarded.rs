@@ -147,7 +147,7 @@ impl Output for GuardedOutput {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let (begun, mut taken) = (Instant::now(), 0);
         loop {
-            // Computed before the request, so that a timeout of zero still makes one.
+            // Computed before the request, so that even with a timeout of zero one request is sent.
             let left = timeout.saturating_sub(begun.elapsed());
             taken += self.write_some(&samples[taken..], left)?;
             if taken == samples.len() || left.is_zero() {
@@ -175,7 +175,7 @@ impl Drop for GuardedOutput {
             let _ = self.end(ABORT, self.waits.abort());
         }
         let (reply, replied) = channel();
-        // Both waits together are at most as long as one answer.
+        // Both waits together are at most as long as the wait for one answer.
         let patience = self.waits.answer().saturating_sub(begun.elapsed());
         let worker = self.worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         if worker.send(Message::Close { patience, reply }).is_ok() {

@@ -38,7 +38,8 @@ pub fn hold(
             FINISH => device.finish().map(|()| Answer::Done(0)),
             // An unknown request aborts too, because zero is always safe.
             _ => {
-                // Dropped before the answer, which says that the output is at zero.
+                // The device is dropped before the answer, because the answer says that the output
+                // is at zero.
                 drop(device);
                 let _ = answer(&mut to, &Answer::Done(0));
                 return;

@@ -47,7 +47,7 @@ pub(crate) fn keep(
     models: Models,
     out: *mut htex_asset,
 ) -> Result<(), Failure> {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     let out = unsafe { place(out) }?;
     let asset = Texture::with_registry(data, models.registry);
     let asset = if models.embedded { asset.with_embedded() } else { asset };
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn htex_asset_open(
     out: *mut htex_asset,
 ) -> htex_status {
     guarded(|| {
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
         let data = htex::format::Asset::open(path.as_ref()).map_err(htex::Error::from)?;
         keep(data, models, out)
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     out: *mut htex_asset,
 ) -> htex_status {
     guarded(|| {
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (path, models) = unsafe { (crate::pointers::wide_path(path)?, models(options)?) };
         let data = htex::format::Asset::open(&path).map_err(htex::Error::from)?;
         keep(data, models, out)
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn htex_asset_open_reader(
 ) -> htex_status {
     guarded(|| {
         // The reader is made first, so that it is closed if the options are invalid. SAFETY: the
-        // pointers are the caller's.
+        // caller passed these pointers.
         let (reader, models) = unsafe { (Reader::from_raw(reader)?, models(options)?) };
         let bytes = reader
             .read_whole()
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     out: *mut htex_asset,
 ) -> htex_status {
     guarded(|| {
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (bytes, models) = unsafe { (slice(bytes, len)?, models(options)?) };
         let data = htex::format::Asset::from_bytes(bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
@@ -147,7 +147,7 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
         let asset = ASSETS.shared(asset.id)?;
         let json = serde_json::to_string(asset.manifest())
             .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&json, out, capacity, length) }
     })
 }
@@ -163,7 +163,7 @@ pub unsafe extern "C" fn htex_asset_name(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&asset.manifest().name, out, capacity, length) }
     })
 }
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn htex_asset_unit(
 ) -> htex_status {
     guarded(|| {
         let unit = ASSETS.shared(asset.id)?.quantity().unit();
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(unit, out, capacity, length) }
     })
 }
@@ -189,7 +189,7 @@ pub unsafe extern "C" fn htex_asset_unit(
 pub unsafe extern "C" fn htex_asset_band(asset: htex_asset, out: *mut htex_band) -> htex_status {
     guarded(|| {
         let band = ASSETS.shared(asset.id)?.band();
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = htex_band { low_hz: band.low_hz, high_hz: band.high_hz };
         Ok(())
     })
@@ -203,7 +203,7 @@ pub unsafe extern "C" fn htex_asset_condition_count(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = asset.manifest().conditions.len();
         Ok(())
     })
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn htex_asset_condition(
         let condition = condition.ok_or(Failure::argument(
             "no condition of this index; htex_asset_condition_count tells how many there are",
         ))?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = htex_condition {
             speed_mm_s: condition.speed_mm_s.unwrap_or(f64::NAN),
             force_n: condition.force_n.unwrap_or(f64::NAN),
@@ -240,7 +240,7 @@ pub unsafe extern "C" fn htex_asset_representation_count(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = asset.manifest().representations.len();
         Ok(())
     })
@@ -262,7 +262,7 @@ pub unsafe extern "C" fn htex_asset_representation_model(
         let representation = representation.ok_or(Failure::argument(
             "no representation of this index; htex_asset_representation_count tells how many there are",
         ))?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&representation.model, out, capacity, length) }
     })
 }
@@ -286,7 +286,7 @@ pub unsafe extern "C" fn htex_asset_magnitude(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
         // SAFETY: as above.
         let frequency_hz = unsafe { slice(frequency_hz, len) }?;
@@ -309,10 +309,10 @@ pub unsafe extern "C" fn htex_asset_level_rms(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
         let level_rms = asset.representation(model)?.level_rms(at)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = level_rms;
         Ok(())
     })

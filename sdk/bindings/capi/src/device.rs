@@ -43,7 +43,7 @@ pub unsafe extern "C" fn htex_device_list_json(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::list_json(out, capacity, length) }
 }
 
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn htex_device_info_json(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::info_json(name, settings, out, capacity, length) }
 }
 
@@ -80,14 +80,14 @@ pub unsafe extern "C" fn htex_device_open(
     rate_hz: f64,
     out: *mut htex_device,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open(name, settings, rate_hz, out) }
 }
 
 /// [one thread at a time] Writes the device's sample rate, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_rate_hz(device: htex_device, out: *mut f64) -> htex_status {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     unsafe { calls::rate_hz(device, out) }
 }
 
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn htex_device_write(
     timeout_ms: u32,
     written: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::write(device, samples, frames, timeout_ms, written) }
 }
 
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn htex_device_status(
     device: htex_device,
     out: *mut htex_device_counts,
 ) -> htex_status {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     unsafe { calls::status(device, out) }
 }
 

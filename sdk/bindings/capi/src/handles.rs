@@ -68,8 +68,8 @@ struct Slot<T> {
     value: UnsafeCell<Option<Box<T>>>,
 }
 
-// SAFETY: a value is reached through `state` alone: exclusively, or by several readers, which
-// `Table::shared` allows only where the value is `Sync`.
+// SAFETY: `state` controls all access to the value: either one thread uses it exclusively, or
+// several threads read it. `Table::shared` allows several readers only if the value is `Sync`.
 unsafe impl<T: Send> Sync for Slot<T> {}
 
 const fn generation(state: u64) -> u64 {
@@ -112,8 +112,8 @@ impl<T: Send + 'static> Table<T> {
         }
         // SAFETY: the slot is empty, its index was spare, and the lock is held.
         unsafe { *slot.value.get() = Some(value) };
-        // Stored after the value, so that a thread that sees the new generation also sees the
-        // value.
+        // The state is stored after the value, so that a thread that sees the new generation also
+        // sees the value.
         slot.state.store(next << 32, Ordering::Release);
         Ok(next << 32 | (self.kind as u64) << KIND_SHIFT | (index as u64 + 1))
     }
@@ -209,7 +209,8 @@ impl<T: Send + 'static> Table<T> {
         // SAFETY: this is the only user.
         let value = unsafe { (*slot.value.get()).take() };
         slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
-        // Only after the slot is empty, because the next `insert` may take it at once.
+        // The index is freed only after the slot is empty, because the next `insert` may take the
+        // slot at once.
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         // A slot that reached the last generation is not used again: its counter would start at 0
         // again, and an old handle would match a new object.
@@ -247,7 +248,7 @@ impl<T: Send + 'static> Table<T> {
         *spare = Spare {
             free: Vec::new(),
             made: 0,
-            // Even, because the slot holds no object.
+            // The generation is even, because the slot holds no object.
             unused: highest.next_multiple_of(2),
         };
         Ok(())

@@ -25,7 +25,7 @@ pub unsafe extern "C" fn htex_library_open(
     path: *const c_char,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open(path, out) }
 }
 
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn htex_library_open_wide(
     path: *const u16,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open_wide(path, out) }
 }
 
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn htex_library_from_bytes(
     len: usize,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::from_bytes(bytes, len, out) }
 }
 
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open_reader(reader, out) }
 }
 
@@ -79,14 +79,14 @@ pub unsafe extern "C" fn htex_library_name(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::name(library, out, capacity, length) }
 }
 
 /// [any thread] Writes the number of textures in the library.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_count(library: htex_library, out: *mut u64) -> htex_status {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     unsafe { calls::count(library, out) }
 }
 
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn htex_library_page_count(
     library: htex_library,
     out: *mut usize,
 ) -> htex_status {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     unsafe { calls::page_count(library, out) }
 }
 
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn htex_library_page_json(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::page_json(library, page, out, capacity, length) }
 }
 
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn htex_library_entry_json(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::entry_json(library, name, out, capacity, length) }
 }
 
@@ -142,7 +142,7 @@ pub unsafe extern "C" fn htex_library_asset(
     options: *const htex_open_options,
     out: *mut htex_asset,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::asset(library, name, options, out) }
 }
 

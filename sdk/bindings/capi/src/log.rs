@@ -57,7 +57,7 @@ pub(crate) fn forget_log() {
 
 /// Passes a message to the function that receives messages, if there is one.
 pub(crate) fn log(level: htex_log_level, message: &str) {
-    // Held during the call, so that `htex_set_log` waits for it.
+    // The lock is held during the call, so that `htex_set_log` waits for the end of the call.
     let log = LOG.read().unwrap_or_else(PoisonError::into_inner);
     // A message may quote a text that contains a zero byte, where C would end the message.
     let (Some(log), Ok(message)) = (&*log, CString::new(message.replace('\0', " "))) else {

@@ -56,8 +56,8 @@ const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_
 /// struct that is shorter or longer than this one.
 ///
 /// # Safety
-/// As in [`slice`], where each motion has the size that the first one states. The motions must stay
-/// valid as long as the iterator.
+/// The same rules apply as for [`slice`]; each motion has the size that the first motion states.
+/// The motions must stay valid as long as the iterator.
 pub(crate) unsafe fn motions(
     pointer: *const htex_motion,
     len: usize,
@@ -81,7 +81,8 @@ pub(crate) unsafe fn motions(
     }
     Ok((0..len).map(move |index| {
         let mut motion = UNKNOWN;
-        // SAFETY: the caller's motions are there, and both have as many bytes, which are numbers.
+        // SAFETY: the caller's motion and this motion both have at least this number of bytes, and
+        // both contain only numbers.
         unsafe {
             let from = first.add(index * size);
             let to = (&raw mut motion).cast::<u8>();

@@ -142,7 +142,8 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
         ));
     }
     let mut options = zeros;
-    // SAFETY: both have as many bytes; all are numbers and pointers, of which zero is one.
+    // SAFETY: both structs have at least this number of bytes; all fields are numbers and pointers,
+    // for which zero is a valid value.
     unsafe {
         let to = (&raw mut options).cast::<u8>();
         to.copy_from_nonoverlapping(pointer.cast(), size.min(size_of::<T>()));
@@ -184,12 +185,12 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
-    // SAFETY: the array and its texts are the caller's.
+    // SAFETY: the caller passed this array and its texts.
     let files: Result<_, _> = unsafe { slice(options.plugins, options.plugins_len) }?
         .iter()
         .map(|file| unsafe { needed_text(*file) }.map(PathBuf::from))
         .collect();
-    // SAFETY: the text is the caller's.
+    // SAFETY: the caller passed this text.
     let cache = match unsafe { text(options.cache) }? {
         Some(folder) => WasmCache::Dir(folder.into()),
         None => WasmCache::Off,
@@ -203,10 +204,10 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         .with_env(installed)
         .with_user_dir(installed);
     let mut registry = Registry::search(&search).map_err(htex::Error::from)?;
-    // SAFETY: the array is the caller's.
+    // SAFETY: the caller passed this array.
     let modules = unsafe { slice(options.modules, options.modules_len) }?;
     for (index, module) in modules.iter().enumerate() {
-        // SAFETY: the bytes are the caller's.
+        // SAFETY: the caller passed these bytes.
         let bytes = unsafe { slice(module.data, module.len) }?;
         let added = registry.add_wasm_bytes(&format!("module {index}"), bytes);
         added.map_err(htex::Error::from)?;

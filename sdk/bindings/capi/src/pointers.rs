@@ -53,7 +53,7 @@ pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     if pointer.is_null() || !pointer.is_aligned() {
         return Err(Failure::argument("the pointer for the result is NULL or misaligned"));
     }
-    // SAFETY: a value of the caller's is there.
+    // SAFETY: the pointer points to a value of the caller.
     Ok(unsafe { &mut *pointer })
 }
 

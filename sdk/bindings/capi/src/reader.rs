@@ -65,7 +65,7 @@ pub(crate) struct Reader {
 
 // SAFETY: the caller of a function with a reader allows calls from any thread.
 unsafe impl Send for Reader {}
-// SAFETY: as above, and several at a time.
+// SAFETY: the caller also allows several calls at the same time.
 unsafe impl Sync for Reader {}
 
 impl Reader {
@@ -107,7 +107,7 @@ impl Reader {
         if len == 0 {
             return Ok(0);
         }
-        // SAFETY: the caller vouches for the function; the buffer has as many bytes.
+        // SAFETY: the caller vouches for the function; the buffer has this number of bytes.
         match unsafe { (self.read)(self.context, offset, buffer.as_mut_ptr(), len) } {
             0 => Ok(len),
             number => Err(io::Error::other(format!(

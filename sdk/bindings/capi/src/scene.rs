@@ -54,7 +54,7 @@ pub unsafe extern "C" fn htex_scene_open(
     options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open_path(path, open, options, out) }
 }
 
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn htex_scene_open_wide(
     options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::open_wide(path, open, options, out) }
 }
 
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn htex_scene_from_bytes(
     options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::from_bytes(bytes, len, files, open, options, out) }
 }
 
@@ -102,14 +102,14 @@ pub unsafe extern "C" fn htex_scene_plan_json(
     capacity: usize,
     length: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::plan_json(scene, out, capacity, length) }
 }
 
 /// [one thread at a time] Writes the sample rate of the scene, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
-    // SAFETY: the place is the caller's.
+    // SAFETY: the caller passed this pointer.
     unsafe { calls::rate_hz(scene, out) }
 }
 
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,
     finger: *const htex_finger,
 ) -> htex_status {
-    // SAFETY: the finger is the caller's.
+    // SAFETY: the caller passed this pointer to a finger.
     unsafe { calls::set_finger(scene, finger) }
 }
 
@@ -136,7 +136,7 @@ pub unsafe extern "C" fn htex_scene_render(
     frames: usize,
     rendered: *mut usize,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     unsafe { calls::render(scene, out, frames, rendered) }
 }
 

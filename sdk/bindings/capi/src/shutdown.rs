@@ -30,7 +30,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
             crate::library::clear()?;
         }
         forget_log();
-        // Last, because these threads stop calls of WASM modules that take too long.
+        // The threads are ended last, because they stop calls of WASM modules that take too long.
         #[cfg(feature = "wasm")]
         htex::model::end_wasm_clocks();
         Ok::<_, Failure>(())

@@ -161,7 +161,8 @@ impl Write for LastError {
 
 fn remember(text: &Text) {
     LAST.with(|last| {
-        // SAFETY: only this thread has access, and `write!` calls nothing that comes back here.
+        // SAFETY: only this thread has access, and nothing that `write!` calls accesses this value
+        // again.
         let last = unsafe { &mut *last.get() };
         last.len = 0;
         // An error only means that the text was cut off.

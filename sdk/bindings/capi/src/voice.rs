@@ -83,7 +83,7 @@ pub unsafe extern "C" fn htex_voice_new(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let ((model, options), out) = unsafe { (voice_options(options)?, place(out)?) };
         out.id = VOICES.insert(Playing::new(&asset, model, options)?)?;
         Ok(())
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn htex_voice_reset(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the motion is the caller's.
+        // SAFETY: the caller passed this pointer to a motion.
         let given = unsafe { crate::motion::motion(motion) }?;
         let options = voice.options.clone();
         let options = match given {
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn htex_voice_model(
 ) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&voice.model, out, capacity, length) }
     })
 }
@@ -150,7 +150,7 @@ pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_stat
 pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = voice.is_silent().into();
         Ok(())
     })
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn htex_voice_set_motion(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the motion is the caller's.
+        // SAFETY: the caller passed this pointer to a motion.
         let motion = unsafe { needed_motion(motion) }?;
         Ok(voice.set_motion(motion)?)
     })
@@ -182,7 +182,7 @@ pub unsafe extern "C" fn htex_voice_render(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the buffer is the caller's.
+        // SAFETY: the caller passed this buffer.
         let out = unsafe { slice_mut(out, frames) }?;
         Ok(voice.render(out)?)
     })
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn htex_voice_render_add(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the buffer is the caller's.
+        // SAFETY: the caller passed this buffer.
         let out = unsafe { slice_mut(out, frames) }?;
         Ok(voice.render_add(out, gain)?)
     })
@@ -227,7 +227,7 @@ pub unsafe extern "C" fn htex_voice_envelope(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (out, bands) = unsafe { (place(out)?, slice_mut(bands, bands_len)?) };
         if (out.size as usize) < size_of::<htex_envelope>() {
             return Err(Failure::argument(
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn htex_voice_envelope_edges(
 ) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointer is the caller's.
+        // SAFETY: the caller passed this pointer.
         let out = unsafe { slice_mut(edges_hz, len) }?;
         let edges_hz = voice.envelope_edges_hz();
         if out.len() != edges_hz.len() {
@@ -285,7 +285,7 @@ pub unsafe extern "C" fn htex_voice_render_path(
         let len = motions_len
             .checked_mul(frames)
             .ok_or(Failure::argument("motions_len * frames is too large"))?;
-        // SAFETY: the arrays are the caller's.
+        // SAFETY: the caller passed these arrays.
         let (motions, out) =
             unsafe { (crate::motion::motions(motions, motions_len)?, slice_mut(out, len)?) };
         // `chunks_exact_mut` panics at 0. The motions are set nevertheless.
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn htex_voice_coverage(
 ) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let coverage = voice.coverage(unsafe { needed_motion(motion) }?);
         // SAFETY: as above.
         unsafe { write_text(&coverage.to_string(), out, capacity, length) }

@@ -91,7 +91,8 @@ impl Device {
     ) -> PyResult<usize> {
         let timeout = Duration::try_from_secs_f64(timeout_s)
             .map_err(|_| option(format!("timeout_s is {timeout_s}; at least 0")))?;
-        // Copied, because other threads may change the array while the interpreter is released.
+        // The samples are copied, because other threads may change the array while the interpreter
+        // is released.
         let samples = samples.as_slice()?.to_vec();
         let device = self.open()?;
         py.detach(|| device.write(&samples, timeout)).map_err(raised)

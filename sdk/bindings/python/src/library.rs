@@ -174,8 +174,8 @@ impl Library {
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
 
-    /// Returns the textures whose spectra are nearest to that of a texture of this library, as pairs
-    /// of the distance in decibels and the entry, the nearest one first.
+    /// Returns the textures whose spectra are nearest to the spectrum of a texture of this library.
+    /// The result contains pairs of a distance in decibels and an entry, the nearest texture first.
     #[pyo3(signature = (name, count=10))]
     fn similar<'py>(
         &self,
@@ -197,8 +197,8 @@ impl Library {
         found.iter().map(|one| Ok((one.distance_db, entry_data(py, &one.entry)?))).collect()
     }
 
-    /// Returns the textures whose spectra nearly equal that of a texture before them: name, name of
-    /// the other texture, distance in decibels.
+    /// Returns the textures whose spectra nearly equal the spectrum of an earlier texture. For
+    /// each, returns its name, the name of the earlier texture, and the distance in decibels.
     #[pyo3(signature = (within_db=0.5))]
     fn duplicates(&self, py: Python<'_>, within_db: f64) -> PyResult<Vec<(String, String, f64)>> {
         let found = py.detach(|| self.library.duplicates(&Query::default(), within_db));
@@ -206,8 +206,8 @@ impl Library {
         Ok(found.map(|one| (one.entry.name, one.of, one.distance_db)).collect())
     }
 
-    /// Compares this library with a newer one by names and hashes: the names of textures that were
-    /// removed, added and changed, and pairs of old and new names of textures that were renamed.
+    /// Compares this library with a newer one by names and hashes. Returns the names of the
+    /// removed, added and changed textures, and the old and new name of each renamed texture.
     fn diff<'py>(&self, py: Python<'py>, newer: &Self) -> PyResult<Bound<'py, PyAny>> {
         let same = |error: LibraryError| error;
         let found =

@@ -54,8 +54,8 @@ pub(crate) fn register_model(
         all.push((descriptor, model));
         old
     });
-    // Dropped here, with the interpreter and without the lock, because dropping it may run the
-    // author's code.
+    // The old model is dropped here, where this thread holds the interpreter but not the lock,
+    // because the drop may run the author's code.
     drop(old);
     Ok(())
 }

@@ -66,7 +66,7 @@ fn measured(
         }
         subjects.push(subject);
     }
-    // Always made, because it must outlive the journal.
+    // The folder is always made, because it must outlive the journal.
     let folder = tempfile::tempdir().map_err(|error| of_file(&std::env::temp_dir(), &error))?;
     let kept = request.journal.clone();
     let file = kept.unwrap_or_else(|| folder.path().join("sweep.part"));

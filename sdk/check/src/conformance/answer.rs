@@ -52,13 +52,14 @@ impl std::fmt::Display for Found {
 }
 
 impl Answer {
-    /// Reads what a reader has printed, or says what is wrong with it.
+    /// Parses the output of a reader. After an error, returns a sentence about the problem.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let text = std::str::from_utf8(bytes).map_err(|_| "it printed no UTF-8".to_owned())?;
         if text.trim().is_empty() {
             return Err("it printed nothing".to_owned());
         }
-        // First any JSON, to tell text that is no JSON from an object with other keys.
+        // The text is first parsed as any JSON, to distinguish text that is not JSON from an object
+        // with other keys.
         let value: Value = serde_json::from_str(text).map_err(|error| {
             let start = shortened(text);
             format!("it printed no JSON object ({error}): {start}")

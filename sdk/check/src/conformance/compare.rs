@@ -7,10 +7,11 @@ use super::Class;
 use super::answer::{Answer, Found, Verdict};
 use super::tasks::{Expected, Values, is_compared};
 
-/// Difference that is allowed, relative to a number.
+/// Allowed difference between two numbers, relative to the expected number.
 const NEAR: f64 = 1e-8;
 
-/// Below this part of a list's largest number, the difference is relative to that part.
+/// If a number is smaller than this fraction of the largest number in its list, the allowed
+/// difference is relative to this fraction of the largest number.
 const OF_THE_LARGEST: f64 = 1e-6;
 
 /// The numbers of a player at a motion.
@@ -22,14 +23,14 @@ pub(super) struct Numbers {
     pub(super) magnitude: Vec<f64>,
 }
 
-/// A motion, and its numbers; nothing if a player refuses to play there.
+/// A motion, and the expected numbers at this motion; `None` if a player must refuse to play.
 #[derive(Debug)]
 pub(super) struct Case {
     pub(super) what: String,
     pub(super) expected: Option<Numbers>,
 }
 
-/// What one run counts for a class, and what is wrong.
+/// The counts of one run for each class, and the mistakes that were found.
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
     pub(super) counts: Vec<(Class, usize, usize)>,
@@ -153,7 +154,7 @@ fn listed(findings: &[&Found]) -> String {
     }
 }
 
-/// Returns what is wrong with the numbers of a case. `null` says that the player refuses to play.
+/// Returns what is wrong with the numbers of a case. `null` means that the player refuses to play.
 fn difference(expected: Option<&Numbers>, given: &Value) -> Option<String> {
     let Some(expected) = expected else {
         return (!given.is_null()).then(|| "it is played, and has to be refused".to_owned());

@@ -21,7 +21,7 @@ pub struct CommandLine {
     words: Vec<String>,
 }
 
-/// What stands for a place in the line.
+/// The texts that replace the placeholders in the line.
 pub(super) struct Filled<'a> {
     pub(super) file: &'a str,
     pub(super) part: &'a str,
@@ -77,7 +77,8 @@ impl CommandLine {
     }
 }
 
-/// Fills in one word from left to right, so that what is filled in is not filled in again.
+/// Replaces the placeholders in one word from left to right. Placeholders inside a filled-in text
+/// are not replaced.
 fn fill(word: &str, filled: &Filled<'_>) -> String {
     let places = [(FILE, filled.file), (PART, filled.part), (OPTIONS, filled.options)];
     let (mut rest, mut text) = (word, String::new());
@@ -98,7 +99,7 @@ fn fill(word: &str, filled: &Filled<'_>) -> String {
     text + rest
 }
 
-/// Splits a line into words; nothing if a quotation mark is not closed.
+/// Splits a line into words; `None` if a quotation mark is not closed.
 fn split(text: &str) -> Option<Vec<String>> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for c in text.chars() {

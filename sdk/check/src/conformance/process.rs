@@ -13,8 +13,8 @@ pub(super) const MOST_OUTPUT: usize = 16 << 20;
 /// Number of bytes that are kept of what a reader writes to standard error.
 const MOST_ERRORS: usize = 64 << 10;
 
-/// Longest time that output is awaited after the process group was killed. Only a process that left
-/// the group can still hold the pipe.
+/// Longest wait for the end of the output after the process group was killed. Only a process that
+/// left the group can still hold the pipe.
 const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// How a reader ended.
@@ -62,7 +62,8 @@ pub(super) fn run(
         }
         std::thread::sleep(Duration::from_millis(2));
     };
-    // Before the reader is waited for: until then no other process can have its number.
+    // The group is killed before the call of `wait`, because until then no other process can get
+    // the reader's number.
     kill(&mut child);
     let status = child.wait()?;
     Ok(match why {
@@ -85,7 +86,7 @@ fn failed(status: ExitStatus, errors: &[u8]) -> String {
 /// Returns the start of a text that came from a reader, on one line.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
-    // Of a long text, only the beginning is looked at.
+    // Only the beginning of a long text is used.
     let start: String = text.trim().chars().take(4 * MOST).collect();
     let line = start.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut chars = line.chars();
@@ -107,8 +108,9 @@ impl Collected {
     }
 }
 
-/// Reads a pipe to its end in a thread, so that the reader never waits for it. Keeps the last `most`
-/// bytes, or, if there is a flag, stops at more than `most` and sets it.
+/// Reads a pipe to its end in a thread, so that the reader never waits for it. Without a flag,
+/// keeps the last `most` bytes. With a flag, sets the flag and stops as soon as there are more than
+/// `most` bytes.
 fn drain(
     pipe: Option<impl Read + Send + 'static>,
     most: usize,
@@ -140,7 +142,7 @@ fn drain(
     collected
 }
 
-/// Returns whether the reader has ended, and leaves it to be waited for.
+/// Returns whether the reader has ended. The caller still has to call `wait`.
 #[cfg(unix)]
 fn has_ended(child: &mut Child) -> bool {
     use rustix::process::{WaitId, WaitIdOptions, waitid};
@@ -148,7 +150,7 @@ fn has_ended(child: &mut Child) -> bool {
     match pid(child).map(|pid| waitid(WaitId::Pid(pid), options)) {
         Some(Ok(status)) => status.is_some(),
         Some(Err(rustix::io::Errno::INTR)) => false,
-        // It cannot be waited for; `Child::wait` says why.
+        // The call failed; `Child::wait` then returns the reason.
         _ => true,
     }
 }

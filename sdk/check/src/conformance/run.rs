@@ -129,7 +129,7 @@ fn fail(error: &Mutex<Option<ConformanceError>>, problem: ConformanceError) {
     }
 }
 
-/// Runs the reader on one file; nothing if the run was stopped.
+/// Runs the reader on one file; `None` if the run was stopped.
 fn outcome(
     line: &CommandLine,
     task: &Task,
@@ -335,7 +335,8 @@ esac
         }
     }
 
-    /// Neither a reader that hangs, nor what it or another reader has started, goes on.
+    /// After a run, no reader is left, not even one that hangs, and no process that a reader
+    /// started is left.
     #[test]
     fn no_process_is_left_behind() {
         let left = tempfile::tempdir().unwrap();

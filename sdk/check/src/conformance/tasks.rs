@@ -40,7 +40,7 @@ pub(super) enum Asked {
 #[derive(Debug)]
 pub(super) struct Expected {
     pub(super) verdict: Verdict,
-    /// Nothing if no validator is asked.
+    /// `None` if the file is not a test for validators.
     pub(super) findings: Option<Vec<Found>>,
     pub(super) values: Values,
 }

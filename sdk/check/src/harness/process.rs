@@ -12,7 +12,7 @@ use crate::harness::{Finding, Outcome};
 /// Maximum number of bytes of a child's output that are kept.
 const MOST_OUTPUT: usize = 1 << 20;
 
-/// Longest time that output is awaited after the child has ended.
+/// Longest wait for the end of the output after the child has ended.
 const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds

@@ -149,8 +149,8 @@ struct Library {
 
 /// Replaces the addresses in one library, and adds their number to `places`.
 unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_void) -> c_int {
-    // SAFETY: the dynamic linker passes a description that lives for the call, and `watch` the
-    // address of a number.
+    // SAFETY: the dynamic linker passes a description that lives during the call, and `watch`
+    // passes the address of a number.
     let (info, places) = unsafe { (&*info, &mut *places.cast::<usize>()) };
     // SAFETY: a name is a string, or null.
     let name = (!info.dlpi_name.is_null())
@@ -253,7 +253,8 @@ impl Library {
     /// Returns the name of a symbol in the dynamic symbol table.
     fn name(&self, symbol: usize) -> &CStr {
         let (symbols, strings) = (self.address(DT_SYMTAB), self.address(DT_STRTAB));
-        // SAFETY: relocations name symbols of this table, whose names are strings of that one.
+        // SAFETY: relocations refer to entries of the symbol table, and the names of these symbols
+        // are in the string table.
         unsafe {
             let symbol = &*(symbols as *const libc::Elf64_Sym).add(symbol);
             CStr::from_ptr((strings + symbol.st_name as usize) as *const c_char)

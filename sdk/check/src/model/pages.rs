@@ -86,8 +86,8 @@ impl<T: Copy + Default> Pages<T> {
     }
 
     pub(crate) fn get(&mut self) -> &mut [T] {
-        // SAFETY: the mapping holds `len` values here, which the system has set to zero; page ends
-        // and sizes of numbers align them.
+        // SAFETY: the mapping holds `len` values here, which the system has set to zero; the values
+        // are aligned because they end at the end of a page.
         unsafe { std::slice::from_raw_parts_mut(self.start, self.len) }
     }
 }
@@ -95,10 +95,10 @@ impl<T: Copy + Default> Pages<T> {
 impl<T> Drop for Pages<T> {
     fn drop(&mut self) {
         if let Some(place) = self.place {
-            // Freed first, so that the handler no longer uses the line.
+            // The place is freed first, so that the handler no longer uses the line.
             STARTS[place].store(0, Ordering::SeqCst);
         }
-        // SAFETY: the mapping of this value, which nobody uses any more.
+        // SAFETY: this value owns the mapping, and nobody uses the mapping any more.
         unsafe { libc::munmap(self.base, self.bytes) };
     }
 }
@@ -131,8 +131,8 @@ extern "C" fn on_fault(signal: c_int, info: *mut siginfo_t, _: *mut c_void) {
             }
         }
     }
-    // This is another fault. It will happen again, and the default action ends the process. SAFETY:
-    // the default action.
+    // This is another fault. The same fault will happen again, and then the default action ends the
+    // process. SAFETY: the default action.
     unsafe { libc::signal(signal, libc::SIG_DFL) };
 }
 

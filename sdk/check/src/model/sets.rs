@@ -52,8 +52,9 @@ impl Case {
         flatten(self.model.descriptor(), &lists)
     }
 
-    /// Returns sets in which one field is at an end of its range, for each field and both ends, as
-    /// a file would store them. If the field is a list, all its numbers are at the end.
+    /// For each field and both ends of its range, returns a set in which the field is at this end.
+    /// The numbers are rounded as a file would store them. If the field is a list, all its numbers
+    /// are at the end.
     pub(crate) fn at_bounds(&self, parameters: &[f64]) -> Result<Vec<AtBound>, Finding> {
         let lists = self.lists(parameters)?;
         let mut sets = Vec::new();

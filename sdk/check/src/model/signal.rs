@@ -95,7 +95,7 @@ pub(crate) fn sharpest_bend(samples: &[f32]) -> f32 {
 
 /// Returns the index of the first sample whose bits differ between two signals.
 pub(crate) fn first_difference(a: &[f32], b: &[f32]) -> Option<usize> {
-    // Bits, so that NaN equals itself and -0 differs from 0.
+    // Bits are compared, so that NaN equals itself and -0 differs from 0.
     a.iter().zip(b).position(|(a, b)| a.to_bits() != b.to_bits())
 }
 

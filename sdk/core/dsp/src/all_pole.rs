@@ -88,8 +88,8 @@ impl AllPole {
             // First get the state of the lattice at the present order.
             self.reflection_mut();
             self.lattice.raise_order(order);
-            // The new stages hold zeros. Only after `order` samples do they hold what they would
-            // hold if they had always been there.
+            // The new stages hold zeros. After `order` samples, they hold the same values as if
+            // they had been there from the start.
             self.unsettled = order;
         }
     }
@@ -125,8 +125,8 @@ impl AllPole {
         let in_lattice = match (&self.direct, self.unsettled) {
             (Some(_), _) => 0,
             (None, 0) => groups.len(),
-            // Rounded up to whole groups, because the direct form takes only these. So the switch
-            // does not depend on the block length.
+            // The number is rounded up to whole groups, because the direct form takes only whole
+            // groups. So the switch does not depend on the block length.
             (None, unsettled) => unsettled.div_ceil(GROUP).min(groups.len()),
         };
         let (moved, steady) = groups.split_at_mut(in_lattice);
@@ -135,7 +135,8 @@ impl AllPole {
             direct.process(self.lattice.order(), steady);
             remember(&mut self.past, steady.as_flattened());
         } else {
-            // It has settled, but the direct form would be too inaccurate for its coefficients.
+            // The filter has settled, but the direct form would be too inaccurate for its
+            // coefficients.
             self.run_lattice(steady.as_flattened_mut());
         }
     }
@@ -367,7 +368,7 @@ mod tests {
                     let same = |(y, x): (&[Quad; GROUP], &Group)| y.map(|y| y.0[voice]) == *x;
                     assert!(block.iter().zip(expected).all(same), "{orders:?} {voice}");
                 }
-                // The outputs a lattice would continue from.
+                // Compares the past outputs, from which a lattice would continue.
                 for (own, alone) in beside.iter().zip(&alone) {
                     assert_eq!(own.past, alone.past);
                 }

@@ -20,7 +20,7 @@ use crate::wide::{Work, very_wide, wide};
 /// twice the order, so little power passes outside the band.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
-/// Number of bins on either side of an edge in which the response changes within one bin.
+/// Within this number of bins on either side of an edge, the response changes inside a single bin.
 const EDGE_BINS: usize = 3;
 /// Points per bin at which the response is evaluated in these bins.
 const EDGE_POINTS: usize = 4;
@@ -198,7 +198,8 @@ impl Work for AllPolePower<'_> {
             for i in 0..TURNS {
                 let re = 1.0 - re[i];
                 let heard = part[i] / (re * re + im[i] * im[i]);
-                // Where the weight is zero, a pole on the circle contributes nothing either.
+                // A point with weight zero contributes nothing, even if a pole on the unit circle
+                // makes `heard` NaN.
                 sums[i] += if part[i] > 0.0 { heard } else { 0.0 };
             }
         }
@@ -305,9 +306,8 @@ mod tests {
         }
     }
 
-    /// White noise of unit variance: half its power per hertz below the Nyquist frequency, times
-    /// the mean power of the filters' response. The energy of the impulse response equals the same
-    /// mean.
+    /// For white noise of unit variance, the mean square after the filters equals the mean of the
+    /// filters' squared response. The energy of the impulse response equals the same mean.
     #[test]
     fn passed_power_equals_the_energy_of_the_impulse_response() {
         for (low_hz, high_hz, rate_hz) in [

@@ -57,7 +57,7 @@ impl BetaDensity {
     /// everywhere.
     pub fn new(alpha: f64, beta: f64) -> Self {
         let valid = [alpha, beta].iter().all(|p| *p > 0.0 && p.is_finite());
-        // In logarithms, because the gamma function overflows from 171 on.
+        // The scale is computed in logarithms, because the gamma function overflows from 171 on.
         let log_scale = if valid {
             libm::lgamma(alpha) + libm::lgamma(beta) - libm::lgamma(alpha + beta)
         } else {

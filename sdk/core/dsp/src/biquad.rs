@@ -36,8 +36,8 @@ impl Biquad {
             if sine.abs() < cosine.abs() {
                 squared_magnitude(c0, c1, c2, sine * sine)
             } else {
-                // Computed from the Nyquist frequency down: z -> -z changes the sign of the odd
-                // coefficient.
+                // The angle is measured from the Nyquist frequency down: z -> -z changes the sign
+                // of the odd coefficient.
                 squared_magnitude(c0, -c1, c2, cosine * cosine)
             }
         };

@@ -41,9 +41,8 @@ pub(crate) fn chebyshev(
         })
         .collect();
     // Each section has magnitude 1 at the far end of the pass band. There the ripple is at its
-    // minimum.
-    // Half of the ripple, so that the ripple lies evenly around 1. The sections are in series, so
-    // one of them can carry the factor of all.
+    // minimum. A factor of half the ripple makes the ripple lie evenly around 1. The sections are
+    // in series, so one of them can carry the factor for all.
     let middle = libm::pow(10.0, -ripple_db / 40.0);
     if let Some(section) = sections.first_mut() {
         section.b0 *= middle;

@@ -17,8 +17,8 @@ use crate::triangles::TriangleBank;
 
 /// Number of bands.
 const BANDS: usize = 30;
-/// Part of the whole energy that is added to the energy of each band, which bounds the level of an
-/// empty band: -120 dB.
+/// Fraction of the total energy that is added to the energy of each band. It limits the level of an
+/// empty band to -120 dB.
 const FLOOR: f64 = 1e-12;
 /// Maximum number of steps; recordings need four to twenty.
 const STEPS: usize = 50;
@@ -29,7 +29,8 @@ const TOLERANCE: f64 = 1e-7;
 const DAMPING: (f64, f64) = (1e-3, 1e8);
 /// Maximum change of a parameter in one step.
 const STRIDE: f64 = 1.0;
-/// Change of a parameter, relative to the parameter or absolute below 1, for its derivative.
+/// Change of a parameter with which its derivative is computed: relative to the parameter, or
+/// absolute if the parameter is below 1.
 const DIFFERENCE: f64 = 1e-6;
 
 /// The band levels to which a model is fitted, measured from a spectrum.
@@ -90,7 +91,7 @@ impl DecibelFit {
             while damping <= DAMPING.1 {
                 let next = step(&best, &by, damping);
                 let trial = self.trial(next, &mut power, &mut shape);
-                // Not if the cost of the trial is NaN.
+                // This is false if the cost of the trial is NaN.
                 if trial.cost < best.cost {
                     best = trial;
                     damping *= 0.25;
@@ -150,8 +151,8 @@ impl DecibelFit {
 }
 
 /// Returns the parameters after a damped step: minus `Jᵀ (J Jᵀ + damping)⁻¹ d`, where the rows of
-/// `Jᵀ` are `by`. This equals the usual `(Jᵀ J + damping)⁻¹ Jᵀ d`, but the system has the size of the
-/// bands, of which a model may have far fewer than parameters.
+/// `Jᵀ` are `by`. This equals the usual `(Jᵀ J + damping)⁻¹ Jᵀ d`, but the size of the system is
+/// the number of bands, and a model may have far more parameters than bands.
 fn step(from: &Trial, by: &[Vec<f64>], damping: f64) -> Vec<f64> {
     let size = from.differences.len();
     let mut matrix = alloc::vec![0.0; size * size];

@@ -49,8 +49,8 @@ impl Direct {
         match order {
             0..=2 => wide(RunVoice::<2>(self, groups)),
             3..=4 => wide(RunVoice::<4>(self, groups)),
-            // Not 6: from one and a half vectors compilers make a loop that shuffles lanes, and a
-            // voice takes a quarter longer.
+            // Not 6: this would be one and a half vectors, for which compilers make a loop that
+            // shuffles lanes. A voice would then take a quarter longer.
             5..=8 => wide(RunVoice::<8>(self, groups)),
             9..=12 => wide(RunVoice::<12>(self, groups)),
             _ => wide(RunVoice::<MAX_ORDER>(self, groups)),
@@ -87,8 +87,8 @@ impl Direct {
     #[inline(always)]
     fn keep<const N: usize>(&mut self, state: &[f64; N]) {
         for i in 0..N {
-            // Checked once for a block and not for each sample: from 1e-200 it is a long way down
-            // to denormal numbers.
+            // This is checked once for a block and not for each sample, because 1e-200 is far above
+            // denormal numbers.
             self.state[i] = without_denormals(state[i]);
         }
     }
@@ -193,7 +193,8 @@ impl Lane for Quad {
     }
 }
 
-// Loops, not closures: closures would not be compiled for the wider registers.
+// The functions use loops and not closures, because closures would not be compiled for the wider
+// registers.
 impl<T: Lane, const N: usize> Short<T, N> {
     /// Filters a block in place.
     #[inline(always)]
@@ -221,8 +222,8 @@ impl<T: Lane, const N: usize> Short<T, N> {
 fn sum<T: Real, const N: usize>(left: &[[T; N]; GROUP], met: &[T; GROUP]) -> [T; N] {
     let mut sum = [T::ZERO; N];
     for i in 0..N {
-        // Summed in pairs, which shortens the chain of additions. `Quad::outputs` must keep this
-        // order.
+        // The terms are summed in pairs, because this shortens the chain of additions.
+        // `Quad::outputs` must keep this order.
         sum[i] = (left[0][i] * met[0] + left[1][i] * met[1])
             + (left[2][i] * met[2] + left[3][i] * met[3]);
     }

@@ -81,8 +81,8 @@ pub struct Analyser {
     /// Number of samples since the last nonzero sample.
     quiet: usize,
     sums: Sums,
-    /// Sums over the windows that ended since the last call of [`Self::read`]. After a call, it
-    /// contains the values of the last window.
+    /// Sums over the windows that ended since the last call of [`Self::read`]. After such a call,
+    /// this field contains the values of the last window.
     bands: Vec<f64>,
     centroid_hz: f64,
 }
@@ -141,7 +141,8 @@ impl Analyser {
     pub fn push(&mut self, samples: &[f32]) {
         let mut rest = samples;
         while !rest.is_empty() {
-            // Up to the end of a window, because `advance` must not go beyond it.
+            // `now` goes at most to the end of a window, because `advance` must not go beyond the
+            // end of a window.
             let (now, later) = rest.split_at(self.to_window().min(rest.len()));
             self.ring[self.at..self.at + now.len()].copy_from_slice(now);
             self.sums.squares += now.iter().map(|x| f64::from(x * x)).sum::<f64>();

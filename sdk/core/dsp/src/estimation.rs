@@ -11,8 +11,9 @@ use crate::linear_prediction::{
     LinearPrediction, Stages, coefficients_to_reflection, levinson_durbin, stabilize,
 };
 
-/// Returns the biased autocorrelation for the lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, where
-/// both the sum and N run over all segments. Returns zeros if there are no samples.
+/// Returns the biased autocorrelation for the lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`. The
+/// sum runs over all segments, and N is the number of all their samples. Returns zeros if there are
+/// no samples.
 pub fn autocorrelation(segments: &[&[f64]], order: usize) -> Vec<f64> {
     let total: usize = segments.iter().map(|segment| segment.len()).sum();
     (0..=order)
@@ -42,7 +43,8 @@ pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut sums = added(errors.iter().map(BurgErrors::sums));
     while stages.is_open() {
         let (cross, power) = sums;
-        // If the segments are too short for another stage, this is 0 / 0, and `push` refuses NaN.
+        // If the segments are too short for another stage, the quotient is 0 / 0, i.e. NaN, which
+        // `push` refuses.
         let reflection = 2.0 * cross / power;
         stages.push(reflection);
         sums = added(errors.iter_mut().map(|error| error.advance(reflection)));
@@ -80,8 +82,8 @@ impl BurgErrors {
     fn advance(&mut self, k: f64) -> (f64, f64) {
         let (forward, backward) = (&mut self.forward[..], &mut self.backward[..]);
         let (mut cross, mut power) = (0.0, 0.0);
-        // The next stage pairs the forward error with the backward error one sample earlier, so the
-        // forward errors move down by one.
+        // The next stage pairs each forward error with the backward error one sample earlier.
+        // Therefore, the forward errors move down by one element.
         let mut delayed = None;
         for i in 0..forward.len().min(backward.len()) {
             let (f, b) = (forward[i], backward[i]);
@@ -119,7 +121,7 @@ pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut coefficients = alloc::vec![0.0; order];
     inverse.apply(&gram[1..stride], &mut coefficients);
     let explained: f64 = coefficients.iter().zip(&gram[1..]).map(|(a, g)| a * g).sum();
-    // A completely predicted signal leaves only rounding, of either sign.
+    // If the signal is predicted completely, only a rounding error is left, which may be negative.
     let error = (gram[0] - explained).max(0.0) / count.max(1) as f64;
     stable_model(coefficients, error, inverse.rank())
 }

@@ -4,11 +4,11 @@ use core::f64::consts::{LN_2, LOG2_E};
 
 use crate::wide::{Work, wide};
 
-/// Number that rounds: if it is added to a number of magnitude below 2⁵¹, the low bits of the sum
-/// are the nearest integer.
+/// Adding this number rounds: if x has a magnitude below 2⁵¹, the low bits of the sum of both are
+/// the integer nearest to x.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-/// Numbers that are computed side by side. Only WASM modules need this, because they are compiled
-/// without the vectorisation of loops (`xtask/src/wasm.rs`).
+/// Count of numbers that are computed side by side. Only WASM modules need this, because they are
+/// compiled without the vectorisation of loops (`xtask/src/wasm.rs`).
 const GROUP: usize = if cfg!(target_family = "wasm") { 4 } else { 1 };
 /// Range to which inputs are clamped. The exponentials at both ends are normal numbers.
 const RANGE: (f64, f64) = (-700.0, 700.0);
@@ -63,7 +63,7 @@ impl Work for Exponentials<'_> {
 /// `2^k exp(r)`, where `k` is the integer nearest to `x / ln 2`.
 #[inline(always)]
 fn exponential(x: f64) -> f64 {
-    // Not `clamp`, which would keep NaN.
+    // This is not written as `clamp`, because `clamp` would keep NaN.
     #[allow(clippy::manual_clamp)]
     let x = x.max(RANGE.0).min(RANGE.1);
     let rounded = x * LOG2_E + ROUND;
@@ -73,7 +73,7 @@ fn exponential(x: f64) -> f64 {
     for term in &TAYLOR[1..] {
         sum = sum * r + term;
     }
-    // The integer is in the low bits of `rounded`, and the shift drops all others. A library
+    // The integer is in the low bits of `rounded`, and the shift drops all other bits. A library
     // function for the power of two would have branches.
     sum * f64::from_bits(rounded.to_bits().wrapping_add(1023) << 52)
 }

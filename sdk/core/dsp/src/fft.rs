@@ -100,19 +100,19 @@ impl RealFft {
         }
     }
 
-    /// Computes the spectrum of the real signal from the spectrum of the complex signal whose real
-    /// and imaginary parts are the even and the odd samples.
+    /// Computes the spectrum of the real signal. It is given the spectrum of a complex signal: the
+    /// real parts are the even samples, and the imaginary parts are the odd samples.
     fn unfold(&self, bins: &mut [Complex<f64>]) {
         let half = self.fold.len();
         for (k, bin) in bins.iter_mut().enumerate().take(half) {
             // `% half`, because bin 0 is its own mirror image.
             let (z, mirrored) = (self.points.point(k), self.points.point((half - k) % half).conj());
             let (even, odd) = ((z + mirrored) * 0.5, (z - mirrored) * 0.5);
-            // Division by i of the sum over the odd samples.
+            // The sum over the odd samples is divided by i.
             let odd = Complex::new(odd.im, -odd.re) * self.fold[k].conj();
             *bin = even + odd;
         }
-        // A transform of length 0 has this bin, but no point to compute it from.
+        // A transform of length 0 also has this bin, but has no point from which to compute it.
         if let (Some(last), true) = (bins.get_mut(half), half > 0) {
             let z = self.points.point(0);
             *last = Complex::new(z.re - z.im, 0.0);
@@ -141,8 +141,8 @@ mod tests {
     }
 
     proptest! {
-        /// As rustfft's transforms, by lengths of all kinds: products of small primes, primes, odd
-        /// ones.
+        /// The results equal rustfft's for all kinds of lengths: products of small primes, primes,
+        /// and odd numbers.
         #[test]
         fn transforms_equal_those_of_rustfft(
             len in prop_oneof![1..400usize, Just(4_000), Just(8_820), Just(9_600), Just(2_205), Just(4_003), Just(10_006)],

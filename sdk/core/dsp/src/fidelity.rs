@@ -15,7 +15,7 @@ use crate::bands::rms;
 /// Number of third-octave bands: their edges are `20 · 2^(k/3)` Hz, with k from 0 to this number.
 pub const THIRD_OCTAVES: usize = 17;
 const LOWEST_HZ: f64 = 20.0;
-/// Relative tolerance: a frequency that is below an edge by no more than this counts as on the
+/// Relative tolerance: a frequency that is lower than an edge by at most this part counts as on the
 /// edge. Edges at 40, 80, ... Hz are bins of the grid, and rounding may make a computed edge
 /// slightly too high.
 const ON_EDGE: f64 = 1e-12;

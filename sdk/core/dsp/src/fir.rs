@@ -23,7 +23,8 @@ impl Fir {
     pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
         let taps = taps.max(1) | 1;
         let half = taps / 2;
-        // A fine frequency grid, so that the truncated impulse response does not alias in time.
+        // The frequency grid is fine, so that the truncated impulse response does not alias in
+        // time.
         let bins = (4 * taps).max(64);
         let sampled: Vec<f64> =
             (0..=bins).map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64)).collect();
@@ -31,8 +32,8 @@ impl Fir {
             .map(|i| libm::cos(core::f64::consts::PI * i as f64 / bins as f64))
             .collect();
         let at = |lag: usize| {
-            // The angle is reduced in whole numbers, so one period of cosines is exact for every
-            // product.
+            // The product `k * lag` is reduced in whole numbers, so a table of one period of
+            // cosines is exact for every product.
             let term = |k: usize| sampled[k] * cosine[k * lag % (2 * bins)];
             let ends = 0.5 * (term(0) + term(bins));
             (ends + (1..bins).map(term).sum::<f64>()) / bins as f64
@@ -57,8 +58,8 @@ impl Fir {
         // Reversed, because the newest sample is multiplied by the last coefficient.
         kernel.reverse();
         let padded = kernel.len().next_multiple_of(8);
-        // `dot` takes multiples of eight. Zeros in front meet the oldest samples, so they add no
-        // delay.
+        // `dot` takes multiples of eight. Zeros in front are multiplied by the oldest samples, so
+        // they add no delay.
         let mut front = alloc::vec![0.0; padded - kernel.len()];
         front.append(&mut kernel);
         Self { history: alloc::vec![0.0; padded - 1 + CHUNK], kernel: front }

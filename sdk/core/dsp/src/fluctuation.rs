@@ -1,8 +1,8 @@
-//! How a signal fluctuates in time, which its spectrum does not show.
+//! How a signal fluctuates in time. The spectrum of the signal does not show this.
 //!
 //! Stationary noise with the spectrum of a recording has the recording's average power in every
 //! band, at all times. But the recording itself becomes stronger and weaker several times a second,
-//! in many bands at the same time. [`Fluctuation`] describes this in three ways:
+//! in many bands at the same time. [`Fluctuation`] describes these changes in three ways:
 //!
 //! - the modulation spectrum: how strongly the power in each third octave rises and falls at 1 to
 //!   64 Hz;
@@ -24,8 +24,9 @@ pub const LEAST_S: f64 = 3.0;
 /// Length of the part of a signal that is measured, seconds. Only the middle of a longer signal is
 /// measured, because a minute is enough for all octaves.
 pub const MOST_S: f64 = 60.0;
-/// Envelopes are computed at a sample rate of about this, hertz, which is above twice the highest
-/// frequency. It is enough for all of them, and takes a tenth of the time at a rate of 20 kHz.
+/// Envelopes are computed at about this sample rate, hertz. The rate is above twice the highest
+/// frequency, so it is enough for all envelopes. The computation takes a tenth of the time that it
+/// would take at a rate of 20 kHz.
 const REDUCED_HZ: f64 = 2500.0;
 /// Number of octaves of modulation: 1–2, 2–4, … 32–64 Hz.
 pub const OCTAVES: usize = 6;
@@ -59,11 +60,11 @@ impl Fluctuation {
     /// Measures a signal. Perpendicular `axes` are measured together: the power envelope of a band
     /// is the sum of the axes' envelopes.
     ///
-    /// For each third octave from 20 Hz, a sharp filter in the FFT of the whole signal gives the
-    /// band's analytic signal. The squared magnitude of this signal is the power envelope. The
-    /// function divides the envelope by its mean, subtracts the mean, and applies a Hann window
-    /// over the whole length. It averages the power spectrum of the result over the bins of each
-    /// octave of modulation.
+    /// For each third octave from 20 Hz, the function selects the band's bins from the FFT of the
+    /// whole signal. The inverse transform of these bins gives the band's analytic signal. The
+    /// squared magnitude of this signal is the power envelope. The function divides the envelope by
+    /// its mean, subtracts the mean, and applies a Hann window over the whole length. It averages
+    /// the power spectrum of the result over the bins of each octave of modulation.
     ///
     /// `None` if the signal is shorter than [`LEAST_S`], silent, or not finite, or if half its
     /// sample rate is below 128 Hz.
@@ -157,10 +158,10 @@ pub struct EnvelopeExcess {
 /// middle is measured.
 ///
 /// The expected variance is exact for Gaussian noise whose period is the length of the signal. Let
-/// ρ be the correlation of the band's analytic signal with itself at a delay. Then the envelope and
-/// its copy at that delay have the covariance `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square of
-/// their mean (D. Middleton, 1948). So the function computes the expected variance from a formula,
-/// and not from random signals with the same spectrum.
+/// ρ be the correlation of the band's analytic signal with itself at a delay. Then the covariance
+/// of the envelope and its copy at that delay is `₂F₁(−½, −½; 1; |ρ|²) − 1`, relative to the square
+/// of their mean (D. Middleton, 1948). So the function computes the expected variance from a
+/// formula, and not from random signals with the same spectrum.
 ///
 /// `None` if the signal is shorter than 1 s, silent, or not finite, or if half its
 /// sample rate is below 128 Hz.
@@ -206,7 +207,7 @@ fn envelope_covariance(u: f64) -> f64 {
 struct Bands {
     /// Sample rate of the bands.
     rate_hz: f64,
-    /// Transform of the length of the bands.
+    /// FFT with the length of the bands' signals.
     fft: RealFft,
     axes: Vec<Vec<Complex<f64>>>,
     bins: Vec<Complex<f64>>,
@@ -225,7 +226,8 @@ impl Bands {
             bins
         };
         let axes = axes.iter().map(spectrum).collect();
-        // The same bins as the spectrum of a shorter signal are the same signal at a lower rate.
+        // If the bins are read as the spectrum of a shorter signal, they give the same signal at a
+        // lower rate.
         let reduced = libm::ceil(len as f64 * REDUCED_HZ / rate_hz) as usize;
         let (len, rate_hz) = match reduced {
             reduced if reduced < len => (reduced, rate_hz * reduced as f64 / len as f64),
@@ -241,7 +243,7 @@ impl Bands {
         bin as f64 * self.rate_hz / self.len as f64
     }
 
-    /// Writes the part of an axis in a band, with its phase turned by `turn`.
+    /// Returns the part of an axis in a band, with its phase turned by `turn`.
     fn filtered(&mut self, axis: usize, [low, high]: [f64; 2], turn: Complex<f64>) -> Vec<f64> {
         for k in 0..self.bins.len() {
             let hz = self.hertz(k);
@@ -258,7 +260,8 @@ impl Bands {
     fn power_envelope(&mut self, band: [f64; 2]) -> Vec<f64> {
         let mut envelope = alloc::vec![0.0; self.len];
         for axis in 0..self.axes.len() {
-            // The part with phases turned by a quarter is the imaginary part of the analytic signal.
+            // The band with its phases turned by a quarter turn is the imaginary part of the
+            // analytic signal.
             for turn in [Complex::ONE, -Complex::I] {
                 let part = self.filtered(axis, band, turn);
                 envelope.iter_mut().zip(&part).for_each(|(sum, x)| *sum += x * x);
@@ -291,7 +294,7 @@ impl Bands {
             let inside = |k: &usize| (low..high).contains(&self.hertz(*k));
             for k in (0..expected.len()).filter(inside) {
                 found.excess[range] += measured[k] - expected[k];
-                // The power of a bin of noise varies by its mean.
+                // The standard deviation of the power of a noise bin equals its mean.
                 found.error[range] += expected[k] * expected[k];
             }
         }
@@ -322,7 +325,8 @@ impl Bands {
         self.bins.iter().copied()
     }
 
-    /// The power spectrum of an envelope without its mean, averaged over each octave.
+    /// Subtracts the mean of an envelope, and returns its power spectrum, averaged over each
+    /// octave.
     fn modulation(&mut self, envelope: &mut [f64], window: &[f64]) -> [f64; OCTAVES] {
         let mean = envelope.iter().sum::<f64>() / self.len as f64;
         envelope.iter_mut().zip(window).for_each(|(x, w)| *x = (*x - mean) * w);

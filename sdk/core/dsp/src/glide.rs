@@ -49,7 +49,7 @@ impl Glide {
         self.len
     }
 
-    /// Starts a change to `target`. Has no effect if `target` is already the target.
+    /// Starts a change to `target`. Has no effect if the gain already has the target `target`.
     pub fn set(&mut self, target: f32) {
         self.set_within(target, self.len);
     }
@@ -77,7 +77,7 @@ impl Glide {
         self.value
     }
 
-    /// Multiplies `block` by the gain. The first sample gets the current gain.
+    /// Multiplies `block` by the gain. The first sample is multiplied by the current gain.
     pub fn apply(&mut self, block: &mut [f32]) {
         let moving = block.len().min(self.left as usize);
         let (moving, steady) = block.split_at_mut(moving);

@@ -39,7 +39,7 @@ impl Band {
 
     /// Grid index (in multiples of [`GRID_HZ`]) of the lowest bin in the band.
     pub fn first_bin(&self) -> usize {
-        // The tolerance keeps an edge on the grid that rounding has moved. 0 Hz is never a bin.
+        // If rounding has moved an edge, the tolerance keeps it on the grid. 0 Hz is never a bin.
         (libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize).max(1)
     }
 
@@ -64,9 +64,9 @@ impl Band {
     }
 }
 
-/// Returns the part of a component's power that the bins of a band measure through the periodic
-/// Hann window. This part is 1 well inside the band, 5/6 at its edge bins, 1/2 midway between an
-/// edge bin and the first bin outside, and 0 far outside.
+/// Returns a part of a component's power: the part that the bins of a band measure through the
+/// periodic Hann window. This part is 1 well inside the band, 5/6 at its edge bins, 1/2 midway
+/// between an edge bin and the first bin outside, and 0 far outside.
 ///
 /// A component near an edge also has power in bins outside the band, which do not count. Noise
 /// generators amplify such a component to compensate for this loss.
@@ -92,7 +92,8 @@ impl ReadPart {
             return 1.0;
         }
         let nearest = libm::round(at);
-        // The bins are whole numbers apart, so one sine serves all of them, up to its sign.
+        // The distances between bins are whole numbers. Therefore, all bins use the same sine,
+        // apart from its sign.
         let turn = crate::trig::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
         let low = first.max(nearest - WINDOW_BINS) as i64;
         let high = last.min(nearest + WINDOW_BINS) as i64;
@@ -106,7 +107,7 @@ impl ReadPart {
 const WINDOW_BINS: f64 = 4.0;
 
 /// Power that the Hann window measures `x` bins from a component of unit power: the square of
-/// `sinc(x) / (1 - x²)`; `turn` is `sin(πx) / π` up to its sign.
+/// `sinc(x) / (1 - x²)`. `turn` is `sin(πx) / π`, apart from its sign.
 fn hann_power(x: f64, turn: f64) -> f64 {
     let x = libm::fabs(x);
     // At 0 and 1 the formula is 0 / 0; these are its limits.

@@ -1,6 +1,6 @@
-//! Finds the peaks of a spectrum between its bins. From each local maximum and its larger
-//! neighbour, this module computes the frequency and amplitude of a sinusoid. Measured through a
-//! periodic Hann window, this sinusoid would have exactly the magnitudes of these two bins.
+//! Finds the peaks of a spectrum between its bins. For each local maximum and its larger neighbour,
+//! this module computes the frequency and amplitude of a sinusoid. A measurement of this sinusoid
+//! through a periodic Hann window would give exactly the magnitudes of these two bins.
 //!
 //! If the sinusoid is `d` bins from the maximum, the larger neighbour is `(1 + d) / (2 - d)` times
 //! as high as the maximum. Magnitudes averaged over segments keep this ratio. The table below
@@ -55,7 +55,8 @@ pub fn select_interpolated_peaks(
 
 /// Returns the indices of the local maxima, as if the spectrum continued with zeros on both sides.
 fn maxima_with_edges(magnitude: &[f64]) -> Vec<usize> {
-    // Between the zeros that are added below, a flat spectrum would be one plateau, and so a peak.
+    // Zeros are added below on both sides. Between them, a flat spectrum would be a plateau, and a
+    // plateau counts as a peak.
     if magnitude.windows(2).all(|pair| pair[0] == pair[1]) {
         return Vec::new();
     }
@@ -82,8 +83,8 @@ fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
 }
 
 /// Returns the distance in bins of the sinusoid from the maximum, towards the neighbour. `ratio` is
-/// the neighbour's height divided by the maximum's. The result is 0 for a ratio below one half,
-/// which a single sinusoid cannot have.
+/// the neighbour's height divided by the maximum's. The result is 0 if the ratio is below one half.
+/// A single sinusoid cannot have such a ratio.
 fn line_distance_bins(ratio: f64) -> f64 {
     ((2.0 * ratio - 1.0) / (1.0 + ratio)).max(0.0)
 }

@@ -2,10 +2,10 @@
 //!
 //! Other FFT libraries use different instructions on different processors, so their rounding
 //! differs between processors. These libraries are also slow in WASM. This FFT (Stockham, radices 2
-//! to 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and in WASM
+//! to 5) is plain arithmetic on arrays. Compilers vectorise it in native libraries and in WASM
 //! modules.
 //!
-//! The noise frames for which this FFT is used have lengths without prime factors above 5, so these
+//! The FFT is used only for noise frames. Their lengths have no prime factors above 5, so these
 //! radices suffice.
 
 use alloc::vec::Vec;
@@ -32,23 +32,23 @@ pub(crate) struct Workspace {
 }
 
 /// One pass of the transform, by one radix. Butterfly `i` reads the points `i + count j` for each
-/// `j` below the radix, and writes the points `radix stride p + stride k + q` for each `k`, where
-/// `i = stride p + q`.
+/// `j` below the radix. With `i = stride p + q`, it writes the points `radix stride p + stride k +
+/// q` for each `k` below the radix.
 #[derive(Debug, Clone)]
 struct Stage {
     radix: usize,
     stride: usize,
     /// Number of butterflies in the stage.
     count: usize,
-    /// Number of groups of [`WIDTH`] butterflies in a row that have the same twiddles. It is 1 if
-    /// the stride is not a multiple of the width. Such a stage writes its results in groups first,
-    /// and then spreads them to their places.
+    /// Number of successive groups that have the same twiddles. A group is [`WIDTH`] butterflies.
+    /// The number is 1 if the stride is not a multiple of the width. Such a stage writes its
+    /// results in groups first, and then spreads them to their places.
     groups: usize,
-    /// `exp(2πi p k / length)` for each of these groups and each `k`: cosines, then sines.
+    /// `exp(2πi p k / length)` for each run of these groups and each `k`: cosines, then sines.
     twiddles: Vec<[Lanes; 2]>,
 }
 
-/// Complex numbers with real and imaginary parts in separate arrays, as vector instructions need
+/// Complex numbers. Real and imaginary parts are in separate arrays, as vector instructions need
 /// them.
 #[derive(Debug, Clone, Default)]
 struct Complexes {
@@ -63,7 +63,7 @@ const LARGEST_RADIX: usize = 5;
 /// Returns the smallest number that is at least `least` and has no prime factor above 5.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let is_smooth = |n: &usize| factors(*n).is_some();
-    // From 1 on, because `factors` would not end for 0.
+    // The search starts at 1, because `factors` would never end for 0.
     (least.max(1)..).find(is_smooth).unwrap_or(least)
 }
 
@@ -92,9 +92,9 @@ impl InverseRealFft {
 
     /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` for each sample `n`.
     ///
-    /// The bins `X_k`, starting at `k = first` and up to `half - 1`, are the products of directions
-    /// (cosines and sines) and amplitudes. All other bins are zero, and surplus values are ignored.
-    /// Does not allocate.
+    /// The bins `X_k` from `k = first` to `half - 1` are the products of directions (cosines and
+    /// sines) and amplitudes. All other bins are zero, and surplus values are ignored. Does not
+    /// allocate.
     pub(crate) fn run(
         &self,
         workspace: &mut Workspace,
@@ -106,8 +106,9 @@ impl InverseRealFft {
         wide(Transform { fft: self, workspace, first, directions, amplitude, out });
     }
 
-    /// Computes the spectrum of the complex signal whose real and imaginary parts are the even and
-    /// the odd samples. So a real signal needs a complex transform of only half its length.
+    /// Computes the spectrum of a complex signal: its real parts are the even samples, and its
+    /// imaginary parts are the odd samples. With this method, a real signal needs a complex
+    /// transform of only half its length.
     #[inline(always)]
     fn fold(&self, to: &mut Complexes, first: usize, [cos, sin]: [&[f32]; 2], amplitude: &[f32]) {
         to.re.fill(0.0);
@@ -116,10 +117,12 @@ impl InverseRealFft {
         // Bin 0 is left out: its mirror image would be point `half`, which does not exist.
         for (k, ((cos, sin), a)) in (first.max(1)..self.half).zip(bins) {
             let (re, im) = (cos * a, sin * a);
-            // X_k adds X + i w X at k, and conj(X) - i w' conj(X) at half - k, where w' = -conj(w).
+            // With X = X_k and w' = -conj(w), bin k adds X + i w X at k, and conj(X) - i w' conj(X)
+            // at half - k.
             let (c, s) = self.fold[k];
             let (turned_re, turned_im) = (-(re * s + im * c), re * c - im * s);
-            // Added and not set, because bins `k` and `half - k` share the same two points.
+            // The values are added and not set, because the bins `k` and `half - k` both contribute
+            // to these two points.
             to.re[k] += re + turned_re;
             to.im[k] += im + turned_im;
             to.re[self.half - k] += re - turned_re;
@@ -155,8 +158,8 @@ impl Work for Transform<'_> {
 }
 
 impl Complexes {
-    /// Zeros for `len` points, and for the unused lanes after the last points of each row of a
-    /// stage.
+    /// Makes zeros for `len` points. Each row of a stage may have unused lanes after its last
+    /// point, so there are some more zeros for these lanes.
     fn zeros(len: usize) -> Self {
         let zeros = || alloc::vec![0.0; len + LARGEST_RADIX * (WIDTH - 1)];
         Self { re: zeros(), im: zeros() }
@@ -253,13 +256,13 @@ impl Stage {
         }
     }
 
-    /// Copies results to the places of their points. In the source, each [`WIDTH`] butterflies have
-    /// first all results with `k = 0`, then all with `k = 1`, and so on.
+    /// Copies results to the places of their points. In the source, each group of [`WIDTH`]
+    /// butterflies has first all its results with `k = 0`, then all with `k = 1`, and so on.
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {
-        // Results with the same `p` are neighbours before and after, so several are copied at a
-        // time.
+        // Results with the same `p` are neighbours both in the source and in the destination, so
+        // several are copied at a time.
         match self.stride {
             s if WIDTH > 4 && s.is_multiple_of(4) => self.spread_by::<4>(groups, out),
             s if s.is_multiple_of(2) => self.spread_by::<2>(groups, out),

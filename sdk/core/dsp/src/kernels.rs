@@ -8,7 +8,8 @@ use crate::shared::Shared;
 /// Stop-band attenuation of the filters, decibels.
 pub(crate) const ATTENUATION_DB: f64 = 70.0;
 
-/// Length, number of phases, whether the rows are exact, and the bits of the cut-off frequency.
+/// The length, the number of phases, whether the rows are exact, and the bits of the cut-off
+/// frequency.
 type Key = (usize, u64, bool, u64);
 
 /// Returns the kernel of [`windowed_sinc`]. With `std`, all voices with the same rates share one
@@ -19,8 +20,8 @@ pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<
     KERNELS.get(key, || windowed_sinc(taps, phases, exact, cutoff).into())
 }
 
-/// Computes a windowed sinc, with one row per phase, and one row more if rows are interpolated.
-/// `cutoff` is in cycles per sample.
+/// Computes a windowed sinc. The table has one row per phase, and one more row if rows are
+/// interpolated. `cutoff` is in cycles per sample.
 fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     // Kaiser's formula for attenuations above 50 dB.
@@ -79,7 +80,8 @@ impl Kaiser {
 
 fn bessel_i0(x: f64) -> f64 {
     let (mut sum, mut term, mut k) = (1.0, 1.0, 1.0);
-    // All terms are positive, so nothing cancels, and the rest is below the rounding of the sum.
+    // All terms are positive, so nothing cancels. When the loop ends, the remaining terms are
+    // smaller than the rounding error of the sum.
     while term > 1e-17 * sum {
         term *= (x / (2.0 * k)) * (x / (2.0 * k));
         sum += term;

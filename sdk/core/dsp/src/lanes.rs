@@ -9,8 +9,8 @@ pub(crate) const WIDTH: usize = if cfg!(target_family = "wasm") { 4 } else { 8 }
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Lanes(pub(crate) [f32; WIDTH]);
 
-// Loops instead of closures, because closures are not always compiled into the function that has
-// the wide registers.
+// These are loops and not closures, because compilers do not always inline a closure into the
+// function that is compiled for wide registers.
 
 impl Add for Lanes {
     type Output = Self;

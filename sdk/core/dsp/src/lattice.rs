@@ -72,8 +72,8 @@ impl AllPoleLattice {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Further stages with zero coefficients change nothing. So a few fixed lengths, with all
-        // state in registers, cover every order.
+        // Additional stages with zero coefficients change nothing. Therefore, a few fixed lengths,
+        // with all state in registers, are enough for all orders up to 16.
         match self.order() {
             0..=2 => self.run::<2>(block),
             3..=4 => self.run::<4>(block),
@@ -85,7 +85,7 @@ impl AllPoleLattice {
         }
     }
 
-    /// Filters a block, as [`Self::run_any`] does, with at most `N` stages.
+    /// Filters a block as [`Self::run_any`] does, but only for an order of at most `N`.
     fn run<const N: usize>(&mut self, block: &mut [f64]) {
         let order = self.order();
         let (mut k, mut delayed) = ([0.0; N], [0.0; N]);
@@ -112,13 +112,13 @@ impl AllPoleLattice {
         }
     }
 
-    /// Sets the state from the last outputs of a filter with these coefficients. The newest output
-    /// is at the end. `past` has at least as many elements as the order.
+    /// Sets the state that a filter with these coefficients has after the outputs `past`. The
+    /// newest output is at the end. `past` has at least as many elements as the order.
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {
             // This is the inverse filter, from outputs to inputs. With constant coefficients it
-            // gives the same backward errors, and these are the state.
+            // gives the same backward errors as the filter, and these errors are the state.
             let mut forward = y;
             let mut backward = y;
             for (k, delayed) in self.reflection.iter().zip(&mut self.delayed) {

@@ -35,7 +35,8 @@ impl PseudoInverse {
     /// Inverts a matrix of `rows` by `columns`. Elements missing from `matrix` count as zero.
     pub fn new(matrix: &[f64], rows: usize, columns: usize) -> Self {
         let element = |r: usize, c: usize| matrix.get(r * columns + c).copied().unwrap_or(0.0);
-        // Rotates pairs of vectors of the shorter side until they are the singular vectors.
+        // Takes the rows or the columns, whichever are fewer, and rotates pairs of them until all
+        // are orthogonal.
         let wide = rows < columns;
         let vectors: Vec<Vec<f64>> = if wide {
             let row = |r| (0..columns).map(|c| element(r, c)).collect();
@@ -57,8 +58,8 @@ impl PseudoInverse {
             let (by_column, by_row) = if wide { (long, short) } else { (short, long) };
             for (out, c) in inverse.chunks_mut(rows).zip(by_column) {
                 for (out, r) in out.iter_mut().zip(by_row) {
-                    // Divided one by one, because the square of `sigma` could overflow or
-                    // underflow.
+                    // Each factor is divided separately, because the square of `sigma` could
+                    // overflow or underflow.
                     *out += (c / sigma) * (r / sigma);
                 }
             }
@@ -119,7 +120,7 @@ impl Factors {
 /// already are orthogonal.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-    // Two roots, because the product of the squares could overflow or underflow.
+    // Each square has its own root, because the product of the squares could overflow or underflow.
     let limit = ORTHOGONAL * crate::root::sqrt(aa) * crate::root::sqrt(bb);
     // This comparison is false if either side is NaN.
     (ab.abs() > limit).then(|| {
@@ -167,7 +168,7 @@ mod tests {
 
     #[test]
     fn tall_systems_are_solved_in_the_least_squares_sense() {
-        // A line through (0, 1), (1, 3), (2, 5), (3, 7).
+        // The line through the points (0, 1), (1, 3), (2, 5) and (3, 7).
         let matrix = [1.0, 0.0, 1.0, 1.0, 1.0, 2.0, 1.0, 3.0];
         let mut x = [0.0; 2];
         PseudoInverse::new(&matrix, 4, 2).apply(&[1.0, 3.0, 5.0, 7.0], &mut x);

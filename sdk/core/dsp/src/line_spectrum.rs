@@ -11,8 +11,8 @@ use core::f64::consts::PI;
 
 use crate::linear_prediction::coefficients_to_reflection;
 
-/// Limit on the steps of a search. At least every third step halves the bracket, so these steps
-/// halve `[0, π]` 56 times, to below the f64 resolution there.
+/// Limit on the steps of a search. At least every third step halves the bracket. Therefore, this
+/// number of steps halves `[0, π]` 56 times, to less than the resolution of f64.
 const MOST_STEPS: usize = 3 * 56;
 /// Relative phase difference up to which two phases count as equal.
 const NEAR: f64 = 4.0 * f64::EPSILON;
@@ -23,8 +23,8 @@ const NEAR: f64 = 4.0 * f64::EPSILON;
 /// The lattice of the model contains an all-pass filter. The line spectral frequencies are the
 /// angles at which the phase of this filter is a multiple of π. The phase decreases monotonically,
 /// from 0 at ω = 0 to -(p + 1)π at ω = π. The phase is computed as a sum over the reflection
-/// coefficients, so it has no ambiguity of 2π. So Newton's method inside a bracket finds each
-/// angle, at any order.
+/// coefficients, so it has no ambiguity of 2π. Therefore, Newton's method inside a bracket finds
+/// each angle, at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -69,8 +69,8 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
             break;
         }
         let newton = at - (lag - target) / slope;
-        // Newton's method alone has no bound on its steps. A bisection every third step gives one
-        // (`MOST_STEPS`).
+        // Newton's method alone has no bound on its steps. A bisection at every third step limits
+        // their number (`MOST_STEPS`).
         at = if step % 3 != 0 && newton > low && newton < high {
             newton
         } else {
@@ -108,8 +108,8 @@ pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     inside && ascend && zeros_of_lines(lsf, coefficients)
 }
 
-/// Does the same as [`coefficients_of_lines`], but for a numerator, whose zeros may lie on the unit
-/// circle. So two frequencies may be equal, and a frequency may be 0 or π. Returns false if the
+/// Does the same as [`coefficients_of_lines`], but for a numerator. Its zeros may lie on the unit
+/// circle, so two frequencies may be equal, and a frequency may be 0 or π. Returns false if the
 /// frequencies are not ascending, or if there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let mut cosines = [0.0; MOST_LINES];
@@ -130,9 +130,9 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 /// factors of every second line. The coefficients of the product of these quadratic factors are a
 /// palindrome, so only half of them are computed. Both polynomials are computed together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
-    // Clearing the memory for few lines takes less time than for many.
+    // If the lines are few, a small array is used, because it takes less time to clear.
     match cosines.len() {
-        // 24 lines are 12 factors, and `multiply` needs two places more.
+        // 24 lines give 12 factors, and `multiply` needs two more elements.
         0..=24 => Halves::<14>::new(cosines).write(coefficients),
         _ => Halves::<{ MOST_FACTORS + 2 }>::new(cosines).write(coefficients),
     }
@@ -160,8 +160,8 @@ impl<const N: usize> Halves<N> {
             halves.multiply(pairs[i].map(|cosine| -2.0 * cosine));
         }
         if let [cosine] = last {
-            // With an odd number of lines, the symmetric polynomial has one more factor.
-            // `multiply` changes both polynomials, so the antisymmetric one is put back.
+            // With an odd number of lines, the symmetric polynomial has one more factor. `multiply`
+            // changes both polynomials, so the antisymmetric one is restored afterwards.
             let other = halves.coefficients;
             halves.multiply([-2.0 * cosine, 0.0]);
             let own = halves.coefficients.iter_mut();
@@ -212,7 +212,7 @@ impl<const N: usize> Halves<N> {
 /// would cancel.
 fn spread_order(n: usize) -> impl Iterator<Item = usize> {
     let bits = n.next_power_of_two().trailing_zeros();
-    // For a single factor, the shift would be as wide as the number, which `>>` does not allow.
+    // For a single factor, the shift would be by all bits of the number. `>>` does not allow this.
     let reversed = move |i: usize| i.reverse_bits().checked_shr(usize::BITS - bits).unwrap_or(0);
     (0..1 << bits).map(reversed).filter(move |&i| i < n)
 }

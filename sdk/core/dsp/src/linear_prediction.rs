@@ -9,9 +9,9 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed this
-/// limit has predicted the signal completely (a pure sinusoid, or only rounding errors are left).
-/// The limit corresponds to a resonance that decays over 10¹⁰ samples.
+/// Largest absolute value of an estimated reflection coefficient. If a stage would exceed this
+/// limit, the signal is predicted completely: it is a pure sinusoid, or only rounding errors are
+/// left. The limit corresponds to a resonance that decays over 10¹⁰ samples.
 pub(crate) const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
 /// A stable all-pole model, and how well it predicts a signal.
@@ -183,7 +183,7 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(&mirrored) {
         mirrored
     } else {
-        // Poles on the circle itself would stay there, because they are their own mirror images.
+        // Poles on the unit circle would stay on it, because they are their own mirror images.
         scale_poles(coefficients, stable * stable * (1.0 - 1e-6))
     }
 }
@@ -210,8 +210,8 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
 }
 
 /// Returns the largest factor, up to `unstable`, by which the poles can be scaled so that the
-/// result is stable. It is 1 divided by the radius of the outermost pole. Found by bisection, since
-/// factor 0 is always stable.
+/// result is stable. This factor is 1 divided by the radius of the outermost pole. The function
+/// finds it by bisection, because the factor 0 always gives a stable result.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
     // 60 halvings reach the resolution of f64.
@@ -260,16 +260,18 @@ pub(crate) fn step_up(a: &mut [f64], k: f64) {
     *last = k;
     let m = previous.len();
     for i in 0..m.div_ceil(2) {
-        // Two at a time from both ends, because each needs the old value of the other. In the
-        // middle of an odd number both are one element, and both lines write the same.
+        // The loop changes two elements at a time, one from each end, because each needs the old
+        // value of the other. In the middle of an odd number of elements the two are the same
+        // element, and both lines write the same value.
         let (front, back) = (previous[i], previous[m - 1 - i]);
         previous[i] = front - k * back;
         previous[m - 1 - i] = back - k * front;
     }
 }
 
-/// Inverse of [`step_up`], for all coefficients but the last: `(front + k back) / (1 - k²)`. It is
-/// computed from sum and difference, which stay precise if |k| is nearly 1.
+/// Inverse of [`step_up`], for all coefficients but the last: `(front + k back) / (1 - k²)`. The
+/// function computes it from the sum and the difference of `front` and `back`, because these stay
+/// precise even if |k| is nearly 1.
 fn step_down(previous: &mut [f64], k: f64) {
     let m = previous.len();
     let (of_sum, of_difference) = (0.5 / (1.0 - k), 0.5 / (1.0 + k));

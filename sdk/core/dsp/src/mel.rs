@@ -69,9 +69,9 @@ impl MelBank {
     /// apex it is constant. Empty filters are skipped. `power` has as many elements as the bank has
     /// frequencies.
     ///
-    /// The result is smoother than a spectrum from the pseudo-inverse of the weights, and is never
-    /// negative. But the band energies of the result ([`Self::energies`]) differ slightly from the
-    /// original energies.
+    /// The result is never negative, and is smoother than a spectrum that is computed with the
+    /// pseudo-inverse of the weights. But the band energies of the result ([`Self::energies`])
+    /// differ slightly from the original energies.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank

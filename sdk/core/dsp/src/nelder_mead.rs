@@ -1,8 +1,8 @@
 //! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and
 //! MATLAB's `fminsearch` (Lagarias et al. 1998).
 //!
-//! The project has its own implementation, because the maintained Rust library reads a clock, and a
-//! model in a sandbox has no clock.
+//! The project has its own implementation: a model in a sandbox has no clock, but the maintained
+//! Rust library reads one.
 
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +100,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         let mut search = Self { f, best: unknown, others: [unknown; N], evaluations: 0 };
         search.best = search.evaluate(start);
         for axis in 0..N {
-            // A vertex that was not evaluated stays infinitely high.
+            // A vertex that was not evaluated keeps the value +∞.
             if search.evaluations >= options.max_evaluations {
                 break;
             }
@@ -125,7 +125,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
     }
 
     fn sort(&mut self) {
-        // Insertion sort: stable, so ties keep their order, and does not allocate.
+        // An insertion sort does not allocate, and is stable: equal values keep their order.
         for i in 1..N {
             for j in (1..=i).rev() {
                 if self.others[j].value < self.others[j - 1].value {
@@ -193,7 +193,8 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         let outside = reflected.value < worst.value;
         let contracted = self.evaluate(self.away_from_worst(if outside { 0.5 } else { -0.5 }));
         let accepted = if outside {
-            // `<=` outside and `<` inside, as in Lagarias et al. and in SciPy.
+            // An outside contraction uses `<=`, and an inside contraction uses `<`, as in Lagarias
+            // et al. and in SciPy.
             contracted.value <= reflected.value
         } else {
             contracted.value < worst.value
@@ -250,8 +251,8 @@ mod tests {
         assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
     }
 
-    /// Needs at most as many evaluations, and finds as low a minimum, as SciPy 1.17's `fmin` with
-    /// these tolerances.
+    /// Compares with SciPy 1.17's `fmin` with these tolerances: the search needs no more
+    /// evaluations, and finds a minimum that is as low.
     fn is_as_scipy<const N: usize>(
         f: impl FnMut(&[f64; N]) -> f64,
         start: [f64; N],

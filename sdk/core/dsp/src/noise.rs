@@ -47,7 +47,7 @@ impl GaussianNoise {
     /// Fills one block for each of two streams. The samples are the same as with [`Self::fill`],
     /// but this function may be faster. Does not allocate.
     pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
-        // First up to the end of one of the two current groups, whichever is nearer.
+        // First fills up to the nearer end of the two current groups.
         let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
         let ((x_head, x), (y_head, y)) = (x.split_at_mut(head), y.split_at_mut(head));
         a.fill(x_head);
@@ -100,8 +100,8 @@ impl Work for Normals<'_> {
         // A local copy of the generator can stay in registers.
         let mut random = self.0.clone();
         for group in self.1 {
-            // The radius draws first and the direction second. Another order would be another sound
-            // for the same seed.
+            // The radius is drawn first, and the direction second. With the other order, the same
+            // seed would give another sound.
             let radius = radii(random.next_bits());
             let (cos, sin) = directions(random.next_bits());
             for i in 0..LANES {
@@ -151,7 +151,8 @@ impl Work for TwoNormals<'_> {
 fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
     let mut radii = [0.0; N];
     for i in 0..N {
-        // In (0, 1], in steps of 2⁻³¹. The bits are signed, so 31 of them remain.
+        // The number is in (0, 1], in steps of 2⁻³¹. Its bits are converted as a signed integer, so
+        // only 31 of them are used.
         let uniform = ((bits[i] >> 1) as i32 as f32 + 1.0) * (1.0 / (1u32 << 31) as f32);
         radii[i] = -2.0 * ln(uniform);
     }
@@ -232,7 +233,7 @@ mod tests {
             let moments = [cos, sin, cos * cos - sin * sin, 2.0 * cos * sin];
             sums.iter_mut().zip(moments).for_each(|(sum, x)| *sum += x);
         }
-        // The standard error of each sum is 224.
+        // Each sum has a standard error of 224.
         assert!(sums.iter().all(|sum| sum.abs() < 1_100.0), "{sums:?}");
     }
 
@@ -257,7 +258,7 @@ mod tests {
             }
         }
         let n = n as f64;
-        // Standard errors: 0.001, 0.0014, 0.0098; tolerances are five of each.
+        // The standard errors are 0.001, 0.0014 and 0.0098. Each tolerance is five standard errors.
         assert!((m1 / n).abs() < 0.005);
         assert!((m2 / n - 1.0).abs() < 0.007);
         assert!((m4 / n - 3.0).abs() < 0.05);

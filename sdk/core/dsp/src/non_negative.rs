@@ -8,9 +8,9 @@ use alloc::vec::Vec;
 
 use crate::triangles::TriangleBank;
 
-/// Weight of the squared norm of the power, the ridge term. It makes the solution unique. If a
-/// spectrum with the wanted energies exists, the solution's energies differ from them by about a
-/// millionth.
+/// Weight of the ridge term, which is the squared norm of the power. It makes the solution unique.
+/// If a spectrum with the wanted energies exists, the solution's energies differ from them by about
+/// a millionth.
 pub(crate) const RIDGE: f64 = 1e-6;
 /// Maximum number of Newton steps; energies of recordings need three to eight.
 const STEPS: usize = 100;
@@ -110,8 +110,8 @@ impl NonNegative {
         for column in &self.columns {
             for (row, weight) in (column.first..).zip(column.weight) {
                 if weight > 0.0 {
-                    // If all energies are zero, this is NaN. The search then ends at once, and
-                    // `max` in `solve` turns the power into 0.
+                    // If all energies are zero, the quotient is NaN. Then the search ends at once,
+                    // and `max` in `solve` turns the power into 0.
                     scratch.wanted[row] = energies[row] / largest;
                 }
             }
@@ -132,7 +132,7 @@ impl NonNegative {
         scratch.derive_here(&self.columns);
         solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.step);
         let slope = scratch.slope();
-        // Written so that a NaN slope ends the search.
+        // The condition is written in this form so that a NaN slope also ends the search.
         if !matches!(slope.partial_cmp(&0.0), Some(core::cmp::Ordering::Less)) {
             return false;
         }
@@ -193,8 +193,8 @@ impl Scratch {
 
     /// Derivative of the residual at the current solution.
     fn derive_here(&mut self, columns: &[Column]) {
-        // Taken out, because `derive` borrows all of `self`. An empty vector is put in its place,
-        // without an allocation.
+        // `at` is taken out, because `derive` borrows all of `self`. An empty vector is put in its
+        // place, without an allocation.
         let at = core::mem::take(&mut self.at);
         self.derive(columns, |column| column.between(&at) > 0.0);
         self.at = at;
@@ -251,7 +251,7 @@ mod tests {
             let (solver, mut scratch) = (NonNegative::new(mel.filters()), Scratch::new(bands));
             let mut power = alloc::vec![0.0; grid.len()];
             for round in 0..20 {
-                // Energies up to 100 dB apart, most of which cannot be reached.
+                // The energies are up to 100 dB apart. No spectrum reaches most of them.
                 let spread = f64::from(round);
                 let energies: Vec<f64> =
                     (0..bands).map(|_| libm::exp(spread * uniform.next_unit())).collect();

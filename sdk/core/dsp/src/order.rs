@@ -1,12 +1,12 @@
-//! Sorts values of all types with a single compiled copy of the standard library's generic sort. A
+//! Sorts values of all types with one compiled copy of the standard library's generic sort. A
 //! further copy, for another type or comparison, would add some 6 kB to a program.
 
 use core::cmp::Ordering;
 
 use alloc::vec::Vec;
 
-/// Returns the indices below `len`, sorted by a comparison of the items that the indices refer to.
-/// Equal items keep their order.
+/// Returns the indices below `len`, sorted by comparing the items at these indices. Equal items
+/// keep their order.
 ///
 /// ```
 /// let names = ["cork", "ash", "birch"];

@@ -17,9 +17,9 @@ pub struct Peak {
 }
 
 /// Returns the indices of the local maxima, ascending. A plateau counts once, and only if the
-/// values fall on both sides. The index of a plateau is the index of its middle; if the plateau has
-/// two middle values, it is the lower of their indices. The first and the last value are never
-/// maxima. Matches `scipy.signal.find_peaks`.
+/// values fall on both sides. The index of a plateau is the index of its middle, or the lower index
+/// if it has two middle values. The first and the last value are never maxima. Matches
+/// `scipy.signal.find_peaks`.
 ///
 /// ```
 /// use htex_dsp::peaks::local_maxima;

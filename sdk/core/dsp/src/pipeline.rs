@@ -13,9 +13,9 @@ const FEW: usize = 2;
 const PAIR: usize = 2;
 
 /// Filter sections in series, like a [`crate::biquad::Cascade`], but pipelined: in each step, a
-/// section processes the two samples that the section before it finished in the previous step. So
-/// all sections compute at the same time. The output is delayed by six samples for every four
-/// sections. Use a pipeline for streams in which a delay of a few samples does not matter.
+/// section processes the two samples that the section before it finished in the previous step. In
+/// this way all sections compute at the same time. The output is delayed by six samples for every
+/// four sections. Use a pipeline for streams in which a delay of a few samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -37,10 +37,12 @@ pub struct Pipeline {
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
 /// Sections side by side: transposed direct form II, unrolled for two samples. The new state is the
-/// sum of contributions of the inputs and of the old state, which can be computed independently.
+/// sum of contributions of the inputs and of the old state. These contributions can be computed
+/// independently of each other.
 #[derive(Debug, Clone, Copy)]
 struct Row<T, const N: usize> {
-    /// Product of all `b0`; the other numerator coefficients are divided by it.
+    /// The product of the `b0` of all sections. The other numerator coefficients of each section
+    /// are divided by the section's `b0`.
     gain: T,
     /// Contributions of the first and the second input to the two state variables.
     first: [[T; N]; 2],
@@ -197,7 +199,7 @@ impl<const N: usize> State<Quad, N> {
     }
 }
 
-// Loops instead of closures, because closures would not be compiled for the wider registers.
+// These are loops and not closures, because closures would not be compiled for the wider registers.
 impl<T: Real, const N: usize> Row<T, N> {
     #[inline(always)]
     fn run(&mut self, pairs: &mut [[T; PAIR]]) {
@@ -232,8 +234,8 @@ impl<T: Real, const N: usize> Row<T, N> {
     }
 }
 
-/// Returns the inputs of all sections: the input of the row, and the last output of each section
-/// for the next one.
+/// Returns the inputs of all sections. The first section gets the input of the row, and each other
+/// section gets the last output of the section before it.
 #[inline(always)]
 #[allow(clippy::manual_memcpy)] // A copied slice goes through memory, and takes a quarter longer.
 fn behind<T: Copy, const N: usize>(input: T, given: &[T; N]) -> [T; N] {

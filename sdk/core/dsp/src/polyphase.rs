@@ -4,11 +4,11 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Number of phases in an interpolated kernel, which has one row more.
+/// Number of phases in an interpolated kernel. The kernel has one more row than phases.
 pub(crate) const INTERPOLATED_PHASES: u64 = 512;
 const CHUNK: usize = 256;
 
-/// One polyphase filter. Output k is at the input time k·M/L.
+/// One polyphase filter. Output k lies at the time k·M/L, counted in input samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Polyphase {
     /// L.
@@ -16,8 +16,8 @@ pub(crate) struct Polyphase {
     /// Integer and fractional part of M/L. The unit of the fractional part is 1/L.
     step: (usize, usize),
     taps: usize,
-    /// The kernel, one row per phase, and one row more if rows are interpolated. All converters
-    /// with the same rates share it.
+    /// The kernel, with one row per phase, and one more row if rows are interpolated. All
+    /// converters with the same rates share the kernel.
     kernel: Arc<[f32]>,
     exact: bool,
     phase: usize,
@@ -28,15 +28,16 @@ pub(crate) struct Polyphase {
 }
 
 impl Polyphase {
-    /// Makes a filter. `step` is the integer and the remaining part of M/L; `taps` is a multiple of
-    /// eight. The kernel has one row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
+    /// Makes a filter. `step` contains the integer part and the fractional part of M/L, as in the
+    /// field `step`. `taps` is a multiple of eight. The kernel has one row per phase, or
+    /// [`INTERPOLATED_PHASES`] rows plus one.
     pub(crate) fn new(up: usize, step: (usize, usize), taps: usize, kernel: Arc<[f32]>) -> Self {
         Self {
             up,
             step,
             taps,
-            // An interpolated kernel has 513 rows, and then `up` is above 1024, so the two cannot
-            // be confused.
+            // An exact kernel has `up` rows. An interpolated kernel has 513 rows, and is used only
+            // if `up` is above 1024, so the two cannot be confused.
             exact: kernel.len() == up * taps,
             kernel,
             phase: 0,
@@ -77,7 +78,7 @@ impl Polyphase {
             // Small pulls keep the latency of parameter changes low.
             let wanted = (self.start + self.taps - self.filled).max(8);
             if self.filled + wanted > self.history.len() {
-                // At a high ratio the next window may begin behind all samples in the buffer.
+                // At a high ratio the next window may begin after the last sample in the buffer.
                 let keep_from = self.start.min(self.filled);
                 self.history.copy_within(keep_from..self.filled, 0);
                 self.filled -= keep_from;
@@ -115,8 +116,8 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     sum(&lanes)
 }
 
-/// Sums the eight lanes. It is not inlined, because its additions across lanes would keep compilers
-/// from vectorising the loop of [`dot`], which would then take half as long again.
+/// Sums the eight lanes. The function is not inlined. Otherwise its additions across lanes would
+/// keep compilers from vectorising the loop of [`dot`], and the loop would take 50 % more time.
 #[inline(never)]
 fn sum(lanes: &[f32; 8]) -> f32 {
     (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))

@@ -1,10 +1,10 @@
 //! A random envelope, which makes stationary noise fluctuate as a recording does.
 //!
 //! The envelope is `exp(x)`, where x is Gaussian noise with the frequencies 0.5 to 32 Hz. Two
-//! parameters, both standard deviations, set the strength of the slow part (0.5 to 8 Hz) and of the
-//! fast part (8 to 32 Hz) of x. The mean square of the envelope is 1. So the envelope changes
-//! neither the level of the noise nor the power in a band that is wider than the range of the
-//! envelope's frequencies.
+//! parameters are the standard deviations of the slow part (0.5 to 8 Hz) and of the fast part (8 to
+//! 32 Hz) of x. The mean square of the envelope is 1. Therefore, the envelope does not change the
+//! level of the noise. It also does not change the power in a band that is wider than the range of
+//! the envelope's frequencies.
 //!
 //! At every sample rate, the envelope is computed 500 times a second, and interpolated linearly
 //! between these times. Therefore it costs little, and is the same function of time at every rate.
@@ -18,17 +18,18 @@ use crate::noise::GaussianNoise;
 
 /// Edges of the slow and of the fast part, hertz.
 pub const PARTS_HZ: [[f64; 2]; 2] = [[0.5, 8.0], [8.0, 32.0]];
-/// The envelope is computed this often, hertz.
+/// Rate at which the envelope is computed, hertz.
 const CONTROL_HZ: f64 = 500.0;
 /// Order of the filters at each edge of a part.
 const ORDER: usize = 4;
-/// The variance that the filters leave of white noise of variance 1.
+/// The variance of white noise of variance 1 after the filters of each part.
 const VARIANCE: [f64; 2] = [0.030_778_483_466_2, 0.098_116_785_489_8];
 /// Correlation of successive values of each part.
 const CORRELATION: [f64; 2] = [0.997_772_984_366_6, 0.957_474_394_533_0];
-/// The filters start this long before the first sample, seconds.
+/// Time before the first sample at which the filters start, seconds.
 const LEAD_S: f64 = 4.0;
-/// Distinguish the two noises from each other, and from the noise of a voice with the same seed.
+/// Numbers that change the seed. With them, the two noises differ from each other, and from the
+/// noise of a voice with the same seed.
 const STREAMS: [u64; 2] = [0x666c_7563_7475_6174, 0x696f_6e20_6661_7374];
 
 /// A random envelope with the mean square 1.
@@ -44,7 +45,8 @@ pub struct RandomEnvelope {
     parts: [Part; 2],
     /// Added to the logarithm, so that the mean square is 1.
     offset: f64,
-    /// The values around the present sample, and its place between them, from 0 to 1.
+    /// The values before and after the present sample. The field `place` is the sample's place
+    /// between them, from 0 to 1.
     between: [f32; 2],
     place: f64,
     step: f64,
@@ -64,7 +66,7 @@ impl RandomEnvelope {
     /// of the slow and of the fast part of the envelope's logarithm, decibels. Values above 12 are
     /// reduced to 12. A rate that is not positive counts as 500 Hz.
     pub fn new(strength_db: [f64; 2], rate_hz: f64, seed: u64) -> Self {
-        // Not `clamp`, which would keep NaN.
+        // This is not written as `clamp`, because `clamp` would keep NaN.
         #[allow(clippy::manual_clamp)]
         let sigma = strength_db.map(|db| db.max(0.0).min(12.0) * LN_10 / 20.0);
         let part = |i: usize| Part {
@@ -73,10 +75,11 @@ impl RandomEnvelope {
             factor: sigma[i] / crate::root::sqrt(VARIANCE[i]),
         };
         let variance = |i: usize| sigma[i] * sigma[i];
-        // Of the product of successive values, whose squares have the mean 1.
+        // The mean product of two successive values is `exp(-lost)`, if the mean of their squares
+        // is 1.
         let lost: f64 = (0..2).map(|i| variance(i) * (1.0 - CORRELATION[i])).sum();
         let product = libm::exp(-lost);
-        // Between the values, linear interpolation lowers the mean square to this.
+        // Linear interpolation between the values lowers the mean square to this number.
         let interpolated = (2.0 + product) / 3.0;
         let mut envelope = Self {
             parts: [part(0), part(1)],
@@ -124,7 +127,8 @@ impl Part {
 /// The filters of a part.
 fn sections([low_hz, high_hz]: [f64; 2]) -> [Biquad; ORDER] {
     let mut all = [Biquad::IDENTITY; ORDER];
-    // The edges are constants within the range of the designs, so both give their sections.
+    // Both edges are constants within the range that the filter designs allow, so both designs
+    // return sections.
     let edges = [high_pass(ORDER, low_hz, CONTROL_HZ), low_pass(ORDER, high_hz, CONTROL_HZ)];
     let designed = edges.iter().flatten().flat_map(|sections| sections.iter());
     all.iter_mut().zip(designed).for_each(|(section, of)| *section = *of);
@@ -135,7 +139,7 @@ fn sections([low_hz, high_hz]: [f64; 2]) -> [Biquad; ORDER] {
 mod tests {
     use super::*;
 
-    /// The integrals behind the two constants.
+    /// Computes the integrals that give the two constants.
     #[test]
     fn the_filters_leave_this_variance_and_correlation() {
         const STEPS: usize = 20_000;

@@ -40,7 +40,7 @@ impl RandomLanes<{ 2 * LANES }> {
 }
 
 impl<const N: usize> RandomLanes<N> {
-    /// The next 32 bits of each.
+    /// Returns the next 32 bits of each generator.
     #[inline(always)]
     pub(crate) fn next_bits(&mut self) -> [u32; N] {
         let [a, b, c, d] = &mut self.0;

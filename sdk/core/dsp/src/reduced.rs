@@ -47,9 +47,9 @@ fn unit(x: f64) -> f64 {
 }
 
 /// Divides a strength between the large and the small motor of a gamepad, depending on the mean
-/// frequency. Up to 60 Hz the large motor gets the whole strength. From 420 Hz on, the small motor
-/// gets the whole strength. Between these frequencies the two parts change linearly with the
-/// frequency.
+/// frequency. At 60 Hz and below, the large motor gets the whole strength. At 420 Hz and above, the
+/// small motor gets the whole strength. Between these frequencies the two parts change linearly
+/// with the frequency.
 ///
 /// ```
 /// use htex_dsp::reduced::two_motors;
@@ -118,7 +118,8 @@ impl Points {
     /// Returns the point that ends the stream: silence, at the end of the last block.
     pub fn end(&self, rate_hz: f64) -> Point {
         Point {
-            // From the number of all samples, so that the rounding of the blocks does not add up.
+            // The time is computed from the number of all samples, so that the rounding errors of
+            // the blocks do not add up.
             time_ns: libm::round(self.frames as f64 / rate_hz * 1e9) as i64,
             strength: 0.0,
             place: self.place,

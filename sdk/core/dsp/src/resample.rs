@@ -6,9 +6,10 @@
 //! libraries work in chunks of a fixed size, which does not meet these requirements. Therefore, the
 //! project has its own converter.
 //!
-//! Textures have no content above 1 kHz, so voices generate noise at sample rates of 2 to 4 kHz. A
-//! voice then generates five to eight times fewer samples than at the rate of the device. In
-//! addition, the converter's filter serves as the steep filter that removes noise above the band.
+//! Textures have no content above 1 kHz, so voices generate noise at sample rates of 2 to 4 kHz. At
+//! these rates a voice generates five to eight times fewer samples than at the rate of the device.
+//! In addition, the converter's filter serves as the steep filter that removes noise above the
+//! band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -79,9 +80,9 @@ impl Resampler {
     /// such as a filter.
     ///
     /// Near half the source's rate, a conversion to a high rate removes up to half of the power.
-    /// This converter also removes the same part of the power if the two rates are equal
-    /// ([`OwnRate`]) or if `to_hz` is the lower rate. So the level is the same at all rates that
-    /// can represent the source's frequencies.
+    /// This converter removes the same part of the power also if the two rates are equal
+    /// ([`OwnRate`]) or if `to_hz` is the lower rate. As a result, the level is the same at all
+    /// rates that can represent the source's frequencies.
     ///
     /// # Errors
     /// Returns the errors of [`Self::new`].
@@ -118,7 +119,7 @@ impl Resampler {
         let mut work = Work::default();
         for spec in &specs {
             let samples = spec.to as f64 / 1000.0 / to_hz;
-            // When a rate is doubled, every other sample is a copy.
+            // If the stage doubles the rate, every other output is a copy of an input.
             let rows = match spec.up() {
                 2 if spec.is_whole() => 0.5,
                 _ if spec.is_exact() => 1.0,
@@ -172,8 +173,8 @@ const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
     /// Computes the amplitude for a source with this sample rate and this highest frequency (both
-    /// in hertz). Returns `None` if this frequency is below the transition band, because the source
-    /// then passes unchanged.
+    /// in hertz). Returns `None` if this frequency is below the transition band. In this case the
+    /// source passes unchanged.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
         Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })
@@ -196,7 +197,8 @@ impl OwnRate {
             let mut sum = 0.0;
             for x in kernel {
                 sum += f64::from(*x) * cos;
-                // Turned step by step, which is much faster than a sine for each coefficient.
+                // The angle is turned step by step. This is much faster than computing a sine for
+                // each coefficient.
                 (cos, sin) = (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
             }
             sum
@@ -226,8 +228,8 @@ fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, Unusabl
     if to_hz >= from_hz || !is_cut {
         return Ok(all);
     }
-    // All of the content fits below half the lower rate, and passes as in a conversion to high
-    // rates.
+    // All of the source's content lies below half the lower rate, so it passes the filter as in a
+    // conversion to high rates.
     let edges = |spec: Spec| {
         let nyquist = 0.5 * from_hz;
         let pass_hz = top_hz.min(nyquist * (1.0 - TRANSITION));
@@ -239,11 +241,11 @@ fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, Unusabl
 /// The stages of a converter; empty if no conversion is needed.
 fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
     let unusable = UnusableRates { from_hz, to_hz };
-    // Whole millihertz, so that the ratio of the rates is an exact fraction.
+    // The rates are rounded to whole millihertz, so that their ratio is an exact fraction.
     let (Some(from), Some(mut to)) = (millihertz(from_hz), millihertz(to_hz)) else {
         return Err(unusable);
     };
-    // A rate that is the other rate divided by a whole number is seldom a whole number of
+    // If one rate is the other rate divided by a whole number, it is seldom a whole number of
     // millihertz.
     let ratio = libm::round(to_hz / from_hz);
     if ratio >= 2.0 && (to_hz / from_hz / ratio - 1.0).abs() < 1e-9 {
@@ -266,9 +268,10 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
         return Ok(alloc::vec![spec(from, to, pass, stop)]);
     }
     // The steep filter runs at only twice the source's rate. The images that it leaves are far
-    // away, so the second stage, with many more outputs, needs few taps.
+    // away. Therefore, the second stage, which computes many more outputs, needs only few taps.
     let middle = 2 * from;
-    // The first stage passes content up to `stop`, and this is where its image begins.
+    // The first stage passes content up to `stop`. The image of this content begins at this
+    // frequency.
     let image = 2.0 * from_hz - stop;
     Ok(alloc::vec![
         spec(from, middle, pass, stop),
@@ -290,7 +293,7 @@ impl Spec {
         })
     }
 
-    /// The kernel of this filter, in steps of a quarter of a sample.
+    /// The kernel of this filter, with four phases: steps of a quarter of a sample.
     fn own_kernel(&self) -> Arc<[f32]> {
         kernels::kernel(self.taps(), OWN_PHASES, true, self.cutoff())
     }
@@ -313,7 +316,7 @@ impl Spec {
         self.from != self.to && self.down() == 1 && self.is_exact()
     }
 
-    /// Whether each phase has its own row in the kernel table.
+    /// Whether the kernel table has a separate row for each phase.
     fn is_exact(&self) -> bool {
         self.up() <= MAX_EXACT_PHASES
     }
@@ -352,9 +355,9 @@ enum Stage {
 impl Stage {
     fn new(spec: &Spec) -> Self {
         if spec.from == spec.to {
-            // The output is a quarter of a sample away from the source's samples. There the phases
-            // of a frequency and its image are a quarter turn apart, so their powers add up, as at
-            // other rates.
+            // The output is a quarter of a sample away from the source's samples. At this distance,
+            // the phases of a frequency and its image differ by a quarter turn. Therefore, their
+            // powers add up, as at other rates.
             let kernel = spec.own_kernel();
             return Self::Rational(Polyphase::with_phase(
                 1,
@@ -440,7 +443,8 @@ mod tests {
                 assert!(error < 2e-3, "{from} -> {to} at {f}: {error}");
             }
         }
-        // The ratio is 17, but not when both rates are rounded to millihertz.
+        // The ratio of the rates is 17. If both rates were rounded to millihertz, it would not be a
+        // whole number.
         let whole = specs(2_594.117_647, 44_100.0, 900.0).unwrap();
         assert!(whole.iter().all(Spec::is_whole));
     }
@@ -452,8 +456,8 @@ mod tests {
             work.unwrap().unwrap().whole.macs
         };
         let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
-        // Every other sample is a copy; the second stage makes five times as many samples with few
-        // taps.
+        // In the first stage, every other sample is a copy. The second stage computes five times as
+        // many samples, but with few taps.
         assert_eq!(macs(4_000.0), 0.5 * taps);
         assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
     }
@@ -470,8 +474,8 @@ mod tests {
             for to_hz in [2_000.0, 2_001.0, 2_050.0, 2_400.0, 8_000.0, 48_000.0] {
                 let found = 2.0 * power(2_000.0, to_hz, hz);
                 let off_db = 10.0 * libm::log10(found / stated);
-                // Lengths of kernels are rounded up to multiples of 2 or 8. A level, of many
-                // frequencies, differs by less.
+                // Lengths of kernels are rounded up to multiples of 2 or 8. A level contains many
+                // frequencies, so levels differ by less than this limit.
                 assert!(off_db.abs() < 0.06, "{hz} Hz at {to_hz}: {off_db} dB");
             }
         }

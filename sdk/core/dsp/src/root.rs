@@ -4,7 +4,8 @@
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline]
 pub fn sqrt(x: f64) -> f64 {
-    // Without `std`, the instruction for vectors is the stable way to the machine's square root.
+    // Without `std`, stable Rust reaches the machine's square root only through the vector
+    // instruction.
     use core::arch::wasm32::{f64x2_extract_lane, f64x2_splat, f64x2_sqrt};
     f64x2_extract_lane::<0>(f64x2_sqrt(f64x2_splat(x)))
 }

@@ -25,20 +25,21 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Makes a loop of `samples`. A cross-fade of `fade` samples (at most half of all) mixes the
-    /// end of `samples` into the start, so the loop is shorter than `samples` by `fade`.
+    /// Makes a loop of `samples`. A cross-fade of `fade` samples (at most half of all samples)
+    /// mixes the end of `samples` into the start. Therefore, the loop is `fade` samples shorter
+    /// than `samples`.
     ///
-    /// The gains of the cross-fade are a sine and a cosine. Both are divided by the square root of
-    /// the power that the sum of the two pieces would have without this division. This power
-    /// depends on the correlation of the pieces. Noise keeps its power, and a sound that repeats
-    /// with the period of the loop stays unchanged.
+    /// The gains of the cross-fade are a sine and a cosine, divided by a common factor. Without
+    /// this division, the sum of the two pieces would have a power that depends on their
+    /// correlation. The factor is the square root of this power. Noise keeps its power, and a sound
+    /// that repeats with the period of the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;
         let (body, after) = samples.split_at_mut(len);
         let correlation = correlation(&body[..fade], after);
         for (n, (start, after)) in body.iter_mut().zip(after).enumerate() {
-            // The offset of half a sample makes both ends of the fade alike.
+            // The offset of half a sample makes the fade symmetric.
             let angle = core::f32::consts::FRAC_PI_2 * (n as f32 + 0.5) / fade as f32;
             let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
             let power = 1.0 + 2.0 * correlation * sin * cos;
@@ -111,7 +112,7 @@ mod tests {
                 *sum += f64::from(x * x) / loops as f64;
             }
         }
-        // 50 places of 400 loops each: standard error 1 %.
+        // Each part sums 50 places of 400 loops, so its standard error is 1 %.
         for part in power.chunks(50) {
             let mean = part.iter().sum::<f64>() / part.len() as f64;
             assert!((mean - 1.0).abs() < 0.05, "{mean}");
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn the_loop_is_continuous_for_any_block_size() {
-        // A slow signal that is not periodic: a jump at the seam would be visible.
+        // The signal is slow and not periodic. The test would find a jump at the seam.
         let slow = |n: usize| libm::sinf(0.0123 * n as f32 + 0.4);
         let closed = Loop::new((0..LEN + FADE).map(slow).collect(), FADE);
         let mut whole = [0.0; 3 * LEN];

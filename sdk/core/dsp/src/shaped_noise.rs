@@ -8,9 +8,9 @@
 //!
 //! When the spectrum changes (a retune), the current frame is computed again with the same phases
 //! and the new spectrum. Over 10 ms, the output cross-fades to the new frame. Parameters that
-//! arrive during a cross-fade wait until the cross-fade ends. Then only the most recent parameters
-//! are converted to a spectrum. In this way a retune computes one frame instead of two. Frames have
-//! single precision, like the output.
+//! arrive during a cross-fade wait until the cross-fade ends. At that time, only the most recent
+//! parameters are converted to a spectrum. In this way a retune computes one frame instead of two.
+//! Frames have single precision, like the output.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -42,9 +42,9 @@ pub struct ShapedNoise {
     amplitude: Vec<f32>,
     pending: Pending,
     pending_amplitude: Vec<f64>,
-    // States of the generator: before it drew the phases of the frame that ends in this hop, of the
-    // frame that begins in it, and of the next frame. From these states a retune draws the phases
-    // of the first two frames again.
+    // Three states of the generator. They are the states before it drew the phases of three frames:
+    // the frame that ends in this hop, the frame that begins in this hop, and the next frame. From
+    // these states a retune draws the phases of the first two frames again.
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
@@ -60,8 +60,8 @@ pub struct ShapedNoise {
     cos: Vec<f32>,
     sin: Vec<f32>,
     workspace: Workspace,
-    /// The current hop: the frame that began last, with the end of the frame before it. The part of
-    /// the frame that overlaps the next frame follows it.
+    /// The current hop: the frame that began last, mixed with the end of the previous frame. After
+    /// the hop comes the part of the frame that overlaps the next frame.
     now: Vec<f32>,
     /// During a cross-fade, the current hop with the new amplitudes. Otherwise possibly the next
     /// hop (see `prepared`).
@@ -71,7 +71,8 @@ pub struct ShapedNoise {
     fade_position: Option<usize>,
 }
 
-/// Identifies a sample rate and a band, by the bits of the rate and of the band's edges.
+/// Identifies a sample rate and a band. The three numbers are the bits of the rate and of the
+/// band's two edges.
 pub type ComponentsKey = [u64; 3];
 
 /// Data that all streams with the same rate and band share.
@@ -87,8 +88,9 @@ struct Frames {
     fade_len: usize,
     first: usize,
     component_hz: Vec<f64>,
-    /// Amplitudes of the first and of the last component, relative to the curve: the root of the
-    /// part of the component's interval that lies between the edges of the noise.
+    /// Amplitudes of the first and of the last component, relative to the curve. A part of the
+    /// component's interval lies between the edges of the noise. The amplitude is the square root
+    /// of this part.
     edges: [f64; 2],
     /// Part of each component's power that the bins of the band measure.
     read: Vec<f64>,
@@ -106,8 +108,8 @@ enum Pending {
 
 /// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
 /// `wanted_hz`. The result is `wanted_hz` divided by an integer. It is the lowest such rate whose
-/// half lies far enough above the band. The interpolation to `wanted_hz` then has room for a wide
-/// transition band.
+/// half lies far enough above the band to leave room for a wide transition band in the
+/// interpolation to `wanted_hz`.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     // The first image then begins at 2.7 times the upper edge, so a single short filter separates
     // it (see `specs` in `resample.rs`).
@@ -117,17 +119,17 @@ pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
 
 /// Returns the part of a component's power that the band's bins measure. A component is not a line
 /// but spreads over neighbouring frequencies, because frames are finite. This function approximates
-/// the spread by the spread of a rectangle as long as the hop.
+/// this spread by the spread of a rectangular window with the length of a hop.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
-    // If the part is 1 at both ends, it is 1 in between, and the sum below would give exactly 1 as
-    // well. Most components take this shortcut.
+    // If the part is 1 at both ends of the spread, it is also 1 in between. In this case the sum
+    // below would be exactly 1. Most components take this shortcut.
     if part.part_at(hz - FRAME_SPREAD * spacing_hz) == 1.0
         && part.part_at(hz + FRAME_SPREAD * spacing_hz) == 1.0
     {
         return 1.0;
     }
-    // The spacing belongs to a frame. The hop is shorter by one part in `OVERLAP`, so its spread is
-    // wider.
+    // The spacing belongs to a frame. The hop is shorter than the frame by one part in `OVERLAP`,
+    // so the spread of the hop is wider.
     let lobe_hz = spacing_hz * OVERLAP as f64 / (OVERLAP - 1) as f64;
     let steps = (FRAME_SPREAD * FRAME_STEPS) as i64;
     let (mut read, mut all) = (0.0, 0.0);
@@ -142,8 +144,8 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     read / all
 }
 
-/// Number of component spacings, on either side, over which a component spreads, and number of
-/// points per spacing at which the spread is evaluated.
+/// A component spreads over this number of component spacings on either side. The second number
+/// says at how many points per spacing the spread is evaluated.
 const FRAME_SPREAD: f64 = 4.0;
 const FRAME_STEPS: f64 = 2.0;
 
@@ -161,8 +163,8 @@ fn rise(n: usize, overlap: usize) -> f64 {
 /// [`ShapedNoise::prepare_at`] for a seed. Multiples of the golden ratio spread consecutive seeds
 /// evenly over the hop.
 fn prepare_at(seed: u64, hop: usize) -> usize {
-    // The upper bits, because the lower bits of a product depend only on the lower bits of the
-    // seed.
+    // The function uses the upper bits of the product, because its lower bits depend only on the
+    // lower bits of the seed.
     let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
     ((part * hop as u64) >> 32) as usize
 }
@@ -182,12 +184,12 @@ impl Frames {
         let hop = len - overlap;
         let spacing = rate_hz / len as f64;
         // Each bin of the texture spectrum represents half a bin on either side, and each component
-        // half a spacing. Where the noise ends must not depend on the rate, otherwise a steep
-        // spectrum would have another level at each rate: the power of a component at the edge is
-        // the power of the part of its interval that lies inside. So the edges are computed for
-        // components at the usual spacing. At higher rates they still depend on the rate, because
-        // files play the same samples in all versions. The tolerance of 1e-9 keeps a component that
-        // rounding has moved just beyond the edge.
+        // represents half a spacing on either side. A component at an edge of the noise gets only
+        // the power of the part of its interval inside the edge. If the edges depended on the rate,
+        // a steep spectrum would have another level at each rate. Therefore, the edges are computed
+        // for components at the usual spacing. At higher rates the edges still depend on the rate,
+        // so that files play the same samples as in earlier versions. If rounding has moved a
+        // component just beyond the edge, the tolerance of 1e-9 keeps the component.
         let usual = if rate_hz < LOW_RATE_HZ { 0.5 / HALF_S } else { spacing };
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / usual - 1e-9).max(1.0);
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / usual + 1e-9).max(low);
@@ -209,7 +211,7 @@ impl Frames {
             rise: (0..overlap).map(|n| rise(n, overlap) as f32).collect(),
             len,
             hop,
-            // A fade that did not fit into a hop would never begin (`begin_fade`).
+            // If a fade were longer than a hop, it would never begin (`begin_fade`).
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
             edges: [low, high].map(inside),
@@ -247,7 +249,8 @@ impl ShapedNoise {
             fade_position: None,
             frames,
         };
-        // Two frames: the first hop contains the end of one and the beginning of the other.
+        // Draws two frames, because the first hop contains the end of one frame and the beginning
+        // of the other.
         noise.draw_next();
         noise.draw_next();
         noise
@@ -314,8 +317,8 @@ impl ShapedNoise {
         self.normalise()
     }
 
-    /// Scales the magnitudes to amplitudes so that the noise measures as unit RMS. Returns false if
-    /// all magnitudes are zero.
+    /// Scales the magnitudes to amplitudes so that a measurement of the noise gives unit RMS.
+    /// Returns false if all magnitudes are zero.
     fn normalise(&mut self) -> bool {
         let [first, last] = self.frames.edges;
         self.pending_amplitude.first_mut().into_iter().for_each(|a| *a *= first);
@@ -350,8 +353,8 @@ impl ShapedNoise {
     pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {
-            // The hop ends before a fade may begin, so that a fade that waits for the next hop
-            // starts at that hop's first sample.
+            // The end of the hop is handled first, and the start of a fade second. In this order, a
+            // fade that waits for the next hop starts at that hop's first sample.
             if self.position == self.frames.hop {
                 self.next_hop();
             }
@@ -386,13 +389,14 @@ impl ShapedNoise {
         let old = &self.now[self.position..self.position + run];
         let new = &self.faded[self.position..self.position + run];
         for (i, ((out, old), new)) in out.iter_mut().zip(old).zip(new).enumerate() {
-            // Linear, because both have the same phases: their amplitudes add, not their powers.
+            // The weights are linear, because both signals have the same phases. Therefore, their
+            // amplitudes add up, and not their powers.
             let weight = (done + i + 1) as f32 / fade_len as f32;
             *out = old + weight * (new - old);
         }
         self.position += run;
         self.fade_position = Some(done + run);
-        // The last weight was 1, so exchanging the buffers makes no step.
+        // The last weight was 1, so exchanging the buffers causes no jump.
         if done + run == fade_len {
             core::mem::swap(&mut self.now, &mut self.faded);
             self.fade_position = None;
@@ -400,8 +404,9 @@ impl ShapedNoise {
         run
     }
 
-    /// Starts a cross-fade to the pending spectrum. It waits if another cross-fade is in progress,
-    /// or if the rest of the hop is too short: a frame that is computed again covers only this hop.
+    /// Starts a cross-fade to the pending spectrum. The cross-fade waits if another one is in
+    /// progress. It also waits if the rest of the hop is too short, because a frame that is
+    /// computed again covers only this hop.
     fn begin_fade(&mut self, make: &mut dyn FnMut(&[f64], &mut [f64])) {
         if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
@@ -410,8 +415,8 @@ impl ShapedNoise {
         self.pending = Pending::None;
         if made {
             self.take_pending();
-            // Before the hop is made again: behind the overlap, `remake_hop` uses the phases that
-            // were drawn last, and these must be the phases of the current frame.
+            // This must come before `remake_hop`. After the overlap, `remake_hop` uses the phases
+            // that were drawn last, and these must be the phases of the current frame.
             self.discard_prepared();
             self.remake_hop();
             self.fade_position = Some(0);
@@ -421,8 +426,8 @@ impl ShapedNoise {
 
     /// Advances to the next frame.
     fn next_hop(&mut self) {
-        // No cross-fade is in progress, since it begins only if it ends within its hop. So `faded`
-        // is free for the next hop.
+        // A cross-fade begins only if it ends within its hop, so no cross-fade is in progress here.
+        // Therefore, `faded` is free for the next hop.
         if self.prepared.is_none() {
             self.prepare();
         }
@@ -468,7 +473,7 @@ impl ShapedNoise {
     /// Computes the rest of the current hop again into `faded`, with the same phases and the
     /// current amplitudes.
     fn remake_hop(&mut self) {
-        // Behind the overlap only one frame sounds, so only that one is computed.
+        // After the overlap, the hop contains only one frame, so only this frame is computed.
         let overlaps = self.position < self.frames.rise.len();
         if overlaps {
             self.draw(self.ending.clone());

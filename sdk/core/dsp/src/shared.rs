@@ -3,8 +3,9 @@
 
 use alloc::sync::Arc;
 
-/// Number of tables of one kind that stay in memory even if they are not in use: the tables that
-/// were requested last. So an app that opens one texture after another computes them only once.
+/// Number of tables of one kind that stay in memory even if they are not in use. These are the
+/// tables that were requested last. Therefore, an app that opens one texture after another computes
+/// each table only once.
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
@@ -39,8 +40,8 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
         let table = match found.and_then(|(_, table)| table.upgrade()) {
             Some(table) => table,
             None => {
-                // Made while the lock is held: another thread that wants the same table waits for
-                // it instead of computing its own.
+                // The table is made while the lock is held. If another thread wants the same table,
+                // it waits for this one instead of computing its own.
                 let table = make();
                 in_use.retain(|(_, table)| table.strong_count() > 0);
                 in_use.push((key, Arc::downgrade(&table)));
@@ -86,11 +87,11 @@ mod tests {
             assert_eq!(get(key, 10 * key), 10 * key);
         }
         assert!(Arc::ptr_eq(&used, &tables.get(1, || Arc::new(11))));
-        // The last four requested are 3, 4, 5 and 1.
+        // The last four requested keys are 3, 4, 5 and 1.
         assert_eq!(get(3, 31), 30);
         assert_eq!(get(2, 21), 21);
         drop(used);
-        // Now they are 5, 1, 3, 2.
+        // Now the last four requested keys are 5, 1, 3 and 2.
         assert_eq!(get(1, 12), 10);
         assert_eq!(get(4, 41), 41);
     }

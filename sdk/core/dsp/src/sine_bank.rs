@@ -17,7 +17,8 @@ use alloc::vec::Vec;
 const ANCHOR_INTERVAL: u32 = 4096;
 /// Number of samples that an oscillator generates at a time.
 const LANES: usize = 8;
-/// Samples generated ahead while nothing changes. Anchors are at the boundaries of such chunks.
+/// Number of samples in a chunk. While nothing changes, samples are generated ahead in chunks, and
+/// anchors are at their boundaries.
 const CHUNK: usize = 64;
 /// Duration of a change of amplitudes and frequencies, seconds.
 const RAMP_S: f64 = 0.010;
@@ -129,14 +130,15 @@ impl SineBank {
             let silent = self.osc.amplitude[i] == 0.0;
             self.set(i, sines.get(i));
             if silent {
-                // The oscillator is silent, so any phase is allowed.
+                // The oscillator is silent, so its phase may jump.
                 self.osc.increment[i] = self.osc.goal[i];
                 self.osc.phase[i] = sines.get(i).map_or(0, |s| cycles_to_fixed(s.phase_cycles));
             }
             self.osc.step[i] = (self.osc.target[i] - self.osc.amplitude[i]) * scale;
-            // The difference as a signed number, because a frequency may fall.
+            // The difference is a signed number, because the frequency may decrease.
             let change = self.osc.goal[i].wrapping_sub(self.osc.increment[i]) as i64;
-            // The division drops a rest, which `end_ramp` makes up for by setting the goal itself.
+            // The division drops the remainder. `end_ramp` corrects this by setting the goal
+            // itself.
             self.osc.bend[i] = (change / i64::from(self.ramp_len)) as u64;
         }
         self.ramp_left = self.ramp_len;
@@ -169,8 +171,9 @@ impl SineBank {
         let n = u64::from(self.since_anchor);
         for i in 0..self.heard {
             let bend = self.osc.bend[i];
-            // The sum of all increments since the anchor. `n (n + 1) / 2` and not `n (n - 1) / 2`,
-            // because `changing_sample` bends the increment before it uses it.
+            // The sum of all increments since the anchor. The factor is `n (n + 1) / 2` and not `n
+            // (n - 1) / 2`, because `changing_sample` adds the bend to the increment before it uses
+            // the increment.
             let turned = self.osc.increment[i]
                 .wrapping_mul(n)
                 .wrapping_add(bend.wrapping_mul(n * (n + 1) / 2));
@@ -205,7 +208,8 @@ impl SineBank {
 
     /// Renders samples of a ramp up to its end or the next anchor; returns their number.
     fn run_ramp(&mut self, out: &mut [f32]) -> usize {
-        // Up to the next anchor, because `render` restarts the recurrences only between two runs.
+        // The run ends at the next anchor, because `render` restarts the recurrences only between
+        // two runs.
         let left = self.ramp_left.min(ANCHOR_INTERVAL - self.since_anchor);
         let run = out.len().min(left as usize);
         for sample in &mut out[..run] {
@@ -308,12 +312,14 @@ fn turned((cos, sin): (f64, f64), (by_cos, by_sin): (f64, f64)) -> (f64, f64) {
 }
 
 fn cycles_to_fixed(cycles: f64) -> u64 {
-    // `as` saturates, and a fraction below 1 times 2^64 fits.
+    // A fraction below 1, multiplied by 2^64, fits into the integer. For larger numbers `as` would
+    // saturate.
     ((cycles - libm::floor(cycles)) * CYCLE) as u64
 }
 
 fn fixed_to_radians(phase: u64) -> f64 {
-    // Signed, so that small negative angles keep their precision.
+    // The phase is converted as a signed number, so that small negative angles keep their
+    // precision.
     (phase as i64) as f64 * (core::f64::consts::TAU / CYCLE)
 }
 
@@ -350,10 +356,11 @@ mod tests {
         bank.render(&mut out[..1_000]);
         bank.retune(&[Sine { frequency_hz: 90.0, amplitude: 0.2, phase_cycles: 0.0 }]);
         bank.render(&mut out[1_000..]);
-        // Steepest slope: 2π (70·1 + 333.3·0.5) / 20 kHz, plus the ramp's own.
+        // The steepest slope is 2π (70·1 + 333.3·0.5) / 20 kHz, plus the slope of the ramp itself.
         let step = out.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
         assert!(step < 0.09, "{step}");
-        // All oscillators of the bank; whole periods of both sines up to a thousandth.
+        // The test uses all oscillators of the bank. The samples contain whole periods of both
+        // sines, to within a thousandth of a period.
         bank.retune(&two_sines());
         let mut out = alloc::vec![0.0f32; 20_200];
         bank.render(&mut out);

@@ -58,7 +58,7 @@ impl SegmentAnalyzer {
     }
 
     /// Factor that converts the magnitude of a windowed bin to the amplitude of a sinusoid: `2 /
-    /// Σw`, which is `4 / len`. The factor 2 accounts for the half of the amplitude that is at the
+    /// Σw`, which is `4 / len`. The factor 2 is needed because half of the amplitude is at the
     /// negative frequency.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
@@ -76,7 +76,8 @@ impl SegmentAnalyzer {
     ) -> Result<(), WrongLength> {
         self.check("segment", self.window.len(), segment.len())?;
         self.check("spectrum buffer", self.window.len() / 2 + 1, bins.len())?;
-        // The mean is removed first: the window would spread it into the bin next to 0 Hz.
+        // The mean is removed first, because otherwise the window would spread it into the bin next
+        // to 0 Hz.
         let mean = segment.iter().sum::<f64>() / segment.len() as f64;
         for ((input, sample), weight) in self.input.iter_mut().zip(segment).zip(&self.window) {
             *input = (sample - mean) * weight;

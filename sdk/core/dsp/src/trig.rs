@@ -99,8 +99,8 @@ impl Work for HalfTurn<'_> {
     }
 }
 
-/// Sines of a quarter turn minus the angles, by Taylor's series. The terms that it omits are below
-/// 2e-18.
+/// Sines of a quarter turn minus the angles, by Taylor's series. The omitted terms of the series
+/// are below 2e-18.
 #[inline(always)]
 fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     /// `(-1)^k / (2 k + 1)!` for k from 10 down to 1.
@@ -119,8 +119,8 @@ fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     const QUARTER: [f64; 2] = [core::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
     let mut cosines = [0.0; LANES];
     for i in 0..LANES {
-        // A quarter turn in two parts. Near it the first difference is exact, and the second part
-        // supplies the digits that are left.
+        // A quarter turn is stored in two parts. For angles near a quarter turn, the difference to
+        // the first part is exact, and the second part supplies the remaining digits.
         let x = (QUARTER[0] - angles[i]) + QUARTER[1];
         let z = x * x;
         let mut r = C[0];
@@ -137,8 +137,8 @@ const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
 /// High word of 2⁻²⁷. Below it, the tangent equals the angle.
 const TINY_TANGENT: u32 = 0x3e40_0000;
-/// High words of 3π/4, 5π/4, 7π/4 and 9π/4. Up to each of these, an angle is reduced by one, two,
-/// three or four quarter turns.
+/// High words of 3π/4, 5π/4, 7π/4 and 9π/4. An angle up to the first, second, third or fourth of
+/// these is reduced by one, two, three or four quarter turns.
 const TURNS: [u32; 4] = [0x4002_d97c, 0x400f_6a7a, 0x4015_fdbc, 0x401c_463b];
 /// High words of π/2, π, 3π/2 and 2π. Near these, the reduction needs more digits of π/2.
 const WHOLE: [u32; 4] = [0x3ff9_21fb, 0x4009_21fb, 0x4012_d97c, 0x4019_21fb];
@@ -151,9 +151,9 @@ fn high_word(x: f64) -> u32 {
 /// Splits an angle above π/4 into quarter turns and a remainder. Returns the remainder as the sum
 /// of two numbers.
 fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
-    // If this is added and subtracted again, a number is rounded to a whole one.
+    // Adding this to a number and subtracting it again rounds the number to an integer.
     const ROUND: f64 = 1.5 / f64::EPSILON;
-    /// π/2 in parts of 33 bits, each with the rest that follows it.
+    /// π/2 in parts of 33 bits. Each part is followed by the rest of π/2 after this part.
     const PARTS: [[f64; 2]; 3] = [
         [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
         [6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21],
@@ -168,8 +168,8 @@ fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     let mut w = turns * PARTS[0][1];
     let mut y = r - w;
     if near.is_none() || WHOLE.contains(&high) {
-        // Digits that have cancelled are replaced by further digits of π/2.
-        // 16 and 49 are the numbers of lost bits up to which the parts before suffice (msun).
+        // Digits that have cancelled are replaced by further digits of π/2. The previous parts
+        // suffice if at most 16 or 49 bits are lost (msun).
         for ([part, rest], lost) in PARTS[1..].iter().zip([16, 49]) {
             let exponent = |x: f64| (high_word(x) >> 20) as i32;
             if exponent(x) - exponent(y) <= lost {
@@ -271,7 +271,7 @@ fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
     if !inverse {
         return w;
     }
-    // A quotient of rounded numbers would be wrong by two units of the last digit.
+    // The quotient of two rounded numbers would be wrong by two units in the last digit.
     let short = |x: f64| f64::from_bits(x.to_bits() & 0xffff_ffff_0000_0000);
     let w0 = short(w);
     let v = r - (w0 - x);

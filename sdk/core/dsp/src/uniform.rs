@@ -34,8 +34,8 @@ impl Uniform {
         self.0.next_u64()
     }
 
-    /// Writes cosines and sines of random angles, uniform on the circle, with errors below 3e-7.
-    /// The shorter slice determines the number of angles.
+    /// Writes the cosines and sines of random angles that are uniform on the circle. The errors are
+    /// below 3e-7. The shorter slice determines the number of angles.
     pub fn fill_directions(&mut self, cos: &mut [f32], sin: &mut [f32]) {
         for (cos, sin) in cos.chunks_mut(DIRECTIONS).zip(sin.chunks_mut(DIRECTIONS)) {
             let mut bits = [0; DIRECTIONS];

@@ -1,8 +1,9 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
 //! Each step takes a few source samples, and computes the output samples for all phases of the
-//! filter. A vector register contains outputs of the same phase for successive source samples. So
-//! no sum runs across the lanes of a register, and the output does not depend on the block sizes.
+//! filter. A vector register contains outputs of the same phase for successive source samples. As a
+//! result, no sum runs across the lanes of a register, and the output does not depend on the block
+//! sizes.
 //!
 //! The converter pulls source samples in multiples of eight. Therefore the source sample at which a
 //! voice retunes does not depend on the conversion stages that follow the voice.
@@ -27,12 +28,12 @@ pub(crate) struct Upsampler {
     taps: usize,
     /// One row of `taps` for each of the `up` phases.
     kernel: Arc<[f32]>,
-    /// Index of the only nonzero coefficient, 1, in the row of phase 0, if there is one. The output
-    /// is then a copy of an input.
+    /// If the row of phase 0 has only one nonzero coefficient and this is 1, the index of this
+    /// coefficient. In this case the output of phase 0 is a copy of an input.
     copies: Option<usize>,
     /// The samples that `steps` windows of `taps` cover. Some more samples precede them, so that
-    /// the length of a pull is a multiple of `steps`. An intermediate stage that pulls in the same
-    /// way then never runs ahead.
+    /// the length of a pull is a multiple of `steps`. An intermediate stage that also pulls
+    /// multiples of `steps` then never computes samples too early.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -77,7 +78,7 @@ impl Upsampler {
     }
 
     fn advance(&mut self, source: &mut dyn FnMut(&mut [f32])) {
-        // The first output is at the centre of the first full window.
+        // The first output lies at the centre of the first full window.
         if self.primed {
             self.history.copy_within(self.steps.., 0);
             let kept = self.history.len() - self.steps;

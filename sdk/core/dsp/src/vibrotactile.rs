@@ -1,20 +1,20 @@
 //! Perception of vibration by a fingertip: the smallest displacement that people detect, and the
 //! impedance of the skin, which converts a force to a displacement.
 //!
-//! The threshold applies to a vibrating contact of 2.9 cm² on the hand's glabrous skin. The
-//! threshold is constant up to 40 Hz, and then falls by 12 dB per octave to its smallest value at
-//! 250 Hz, where the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35,
-//! 1962–1966, as summarised by Gescheider & Verrillo 1979). Above 250 Hz, the threshold rises by 9
-//! dB per octave (Verrillo 1966, *Psychonomic Science* 4, 135–136). The smallest threshold is −20
-//! dB re 1 µm, i.e. 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust.
-//! Soc. Am.* 84, 1680–1694). The thresholds of different people differ by some 10 dB. At
-//! frequencies at which the Pacinian channel determines the threshold, each halving of the
+//! The threshold applies to a vibrating contactor with an area of 2.9 cm² on the hand's glabrous
+//! skin. The threshold is constant up to 40 Hz, and then falls by 12 dB per octave to its smallest
+//! value at 250 Hz, where the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc.
+//! Am.* 35, 1962–1966, as summarised by Gescheider & Verrillo 1979). Above 250 Hz, the threshold
+//! rises by 9 dB per octave (Verrillo 1966, *Psychonomic Science* 4, 135–136). The smallest
+//! threshold is −20 dB re 1 µm, i.e. 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky
+//! 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). The thresholds of different people differ by some 10
+//! dB. At frequencies at which the Pacinian channel determines the threshold, each halving of the
 //! contact's area raises the threshold by 3 dB.
 //!
 //! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
-//! The smallest threshold and the values of [`Skin`] are rounded values, with one or two digits,
-//! that are commonly quoted from the papers. A laboratory that has measured its participants should
-//! use its own [`Listener`].
+//! The smallest threshold and the values of [`Skin`] are commonly quoted from the papers, rounded
+//! to one or two digits. A laboratory that has measured its participants should use its own
+//! [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
 const FLAT_HZ: f64 = 40.0;
@@ -41,8 +41,8 @@ pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
     SMALLEST_THRESHOLD_M * libm::pow(ratio, slope)
 }
 
-/// Mechanical impedance with which a fingertip resists a force along the surface: spring, damper
-/// and mass in parallel.
+/// Mechanical impedance of a fingertip for a force along the surface: a spring, a damper and a mass
+/// in parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skin {
     pub stiffness_n_m: f64,

@@ -1,7 +1,7 @@
 //! Reads a stream of samples faster or slower, at a ratio that may change at any sample.
 //!
-//! A player reads a texture faster or slower when the motion differs from the motion for which the
-//! voice was created. As long as the two motions are the same, the ratio is 1, and samples pass
+//! A player reads a texture faster or slower if the current motion differs from the motion for
+//! which the voice was created. If the two motions are the same, the ratio is 1, and samples pass
 //! through this reader unchanged and at no cost ([`Warp::when_needed`]). The interpolation also
 //! needs samples after the current position. This causes no delay, because the reader pulls these
 //! samples from its source in advance. The interpolation kernel has 8 to 32 taps, as many as are
@@ -23,9 +23,9 @@ const LANES: usize = 8;
 const PHASE_BITS: u32 = 8;
 /// Maximum number of outputs read at a time.
 const CHUNK: usize = 64;
-/// The same as [`PHASE_BITS`], for a reader that interpolates only when it is needed. Its table
-/// takes an eighth of the time to compute. The interpolation error between its rows is -60 dB at
-/// 0.4 of the source's rate, and -98 dB at 0.05.
+/// The same as [`PHASE_BITS`], but for a reader that starts to interpolate only when this is
+/// needed. Computing its table takes an eighth of the time. The interpolation error between its
+/// rows is -60 dB at 0.4 of the source's rate, and -98 dB at 0.05.
 const FEW_PHASE_BITS: u32 = 5;
 
 /// Reads a stream of samples at a variable ratio, by windowed-sinc interpolation. Like
@@ -44,9 +44,10 @@ const FEW_PHASE_BITS: u32 = 5;
 pub struct Warp {
     taps: usize,
     phase_bits: u32,
-    /// One row of `taps` coefficients per phase, plus one row; unused if there is one tap.
+    /// One row of `taps` coefficients per phase, plus one row. If there is only one tap, the kernel
+    /// is not used.
     kernel: Arc<[f32]>,
-    /// Position of the next output after `start`, in units of 2⁻⁶⁴ source samples.
+    /// Distance from `start` to the next output, in units of 2⁻⁶⁴ source samples.
     place: u64,
     history: Vec<f32>,
     start: usize,
@@ -73,7 +74,7 @@ impl Warp {
     /// then on.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::with_taps(taps(top), FEW_PHASE_BITS);
-        // The samples before the first one count as zeros.
+        // The samples before the first sample of the source count as zeros.
         warp.filled = warp.before();
         warp.reads = false;
         warp
@@ -92,7 +93,7 @@ impl Warp {
         }
     }
 
-    /// Number of samples in a window before the position that is read.
+    /// Number of samples that a window contains before the position that is read.
     fn before(&self) -> usize {
         self.taps / 2 - 1
     }
@@ -139,13 +140,14 @@ impl Warp {
             (self.place, carry) = self.place.overflowing_add(part);
             self.start += whole + usize::from(carry);
         }
-        // Only now is it known how many samples all windows need, so the source is called once.
+        // The source is called only once, here, because only now the number of samples that all
+        // windows need is known.
         self.pull(last + self.taps, source);
         wide(Windows { warp: self, places: &places[..count], out: &mut out[..count] });
         count
     }
 
-    /// Stores the samples that precede the next one.
+    /// Stores the samples that precede the next sample.
     fn remember(&mut self, block: &[f32]) {
         let before = self.before();
         let new = block.len().min(before);
@@ -153,8 +155,8 @@ impl Warp {
         self.history[before - new..before].copy_from_slice(&block[block.len() - new..]);
     }
 
-    /// Drops samples before the next window. If the window is ahead, reads and discards source
-    /// samples.
+    /// Drops samples before the next window. If the window begins after the samples in the history,
+    /// reads and discards source samples.
     fn skip(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start > self.filled {
             let end = self.history.len().min(self.start - self.filled);
@@ -181,8 +183,8 @@ fn taps(top: f64) -> usize {
     taps.min(MOST_TAPS)
 }
 
-/// Position of a sample: the start of its window in the history, and the fraction of the way to the
-/// next sample.
+/// Position of an output: the start of its window in the history, and the position between two
+/// source samples as a fraction.
 #[derive(Debug, Clone, Copy, Default)]
 struct ReadPosition {
     start: usize,
@@ -223,7 +225,7 @@ impl Windows<'_> {
         let rows = self.warp.kernel.as_chunks::<TAPS>().0;
         for (sample, place) in self.out.iter_mut().zip(self.places) {
             let row = (place.between >> (64 - bits)) as usize;
-            // 24 bits are as many as a single-precision number holds exactly.
+            // A single-precision number holds 24 bits exactly.
             let between = (place.between << bits >> 40) as f32 / (1u32 << 24) as f32;
             let window = &self.warp.history[place.start..][..TAPS];
             *sample = dot_between([&rows[row], &rows[row + 1]], between, window);

@@ -37,7 +37,8 @@ pub(crate) fn wide(work: impl Work) {
 }
 
 /// Runs the version of `work` that was compiled for AVX-512 (512-bit registers) if the processor
-/// has AVX-512. Otherwise returns `work`: the caller then does it in two halves, which is faster.
+/// has AVX-512. Otherwise returns `work`. The caller then does the work in two halves, which is
+/// faster on other processors.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]

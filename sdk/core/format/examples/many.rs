@@ -1,9 +1,9 @@
-//! Packs many small textures. Measures the time, the memory, and the reads and bytes that opening
-//! one texture needs.
+//! Packs many small textures. Measures what opening one texture needs: time, memory, number of
+//! reads, and number of bytes.
 //!
-//! `cargo run --release -p htex-format --example many` packs 1,000, 100,000 and 1,000,000
-//! textures; other numbers may be given. Each number runs in its own process, so that its peak
-//! memory is measured separately.
+//! `cargo run --release -p htex-format --example many` packs 1,000, 100,000 and 1,000,000 textures.
+//! Other numbers may be given as arguments. Each number of textures is measured in its own process,
+//! so that the peak memory is measured separately.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::error::Error;
@@ -20,7 +20,7 @@ const COUNTS: [u64; 3] = [1_000, 100_000, 1_000_000];
 /// Number of textures to open, spread over the library. The measurement opens the library anew for
 /// each texture.
 const OPENED: u64 = 200;
-/// Argument that tells a process to pack textures and print the result.
+/// Argument that tells a process to pack textures and to print the result.
 const PACKS: &str = "--packs";
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -21,8 +21,8 @@ pub(crate) const MIMETYPE: &str = "mimetype";
 pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-// Bit 0 is encryption, bit 6 strong encryption, and bit 13 says that values of the local header are
-// hidden, which also happens only in encrypted archives.
+// Bit 0 means encryption, and bit 6 means strong encryption. Bit 13 means that values of the local
+// header are hidden. This also occurs only in encrypted archives.
 const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
 const DATA_DESCRIPTOR: u16 = 1 << 3;
 const ZIP64_16: u16 = u16::MAX;
@@ -48,8 +48,8 @@ pub(crate) struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
-    /// Checks the records and unpacks all entries. Returns `None` if this adds an error to the
-    /// findings.
+    /// Checks the records and unpacks all entries. If something is wrong, adds an error to the
+    /// findings and returns `None`.
     pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
             findings.add(rule::FILE_TOO_LARGE, "", too_large(bytes.len() as u64, limits));
@@ -57,12 +57,12 @@ impl<'a> Archive<'a> {
         }
         let end = end_record(bytes, limits, findings)?;
         let packed = directory(bytes, &end, limits, findings)?;
-        // Nothing is unpacked unless all records are valid, because they state the sizes that are
-        // limited.
+        // Entries are unpacked only if all records are valid, because the limits are compared with
+        // the sizes in the records.
         if findings.has_errors() {
             return None;
         }
-        // All entries are unpacked before the first failure counts, so that each damaged one gets a
+        // All entries are unpacked, even after a failure, so that each damaged entry gets a
         // finding.
         let unpacked = packed.into_iter().map(|packed| packed.unpack(findings));
         let entries: Vec<Option<Entry<'_>>> = unpacked.collect();
@@ -150,8 +150,8 @@ fn directory<'a>(
     let mut names = BTreeSet::new();
     let (mut at, mut expected_local, mut total) = (end.directory_at as usize, 0usize, 0u64);
     for index in 0..usize::from(end.entries) {
-        // The end record is cut off first, so that no field of a directory record can reach into
-        // it.
+        // The bytes are cut off before the end record, so that no field of a directory record can
+        // extend into the end record.
         let record = zip_records::central(bytes.get(..end.at)?, at);
         let Some((central, next)) = record else {
             let message = format!("the directory is damaged at record {index}");
@@ -161,7 +161,8 @@ fn directory<'a>(
         at = next;
         let name = String::from_utf8_lossy(central.name).into_owned();
         check_name(central.name, &name, findings);
-        // ASCII is enough, because a name with any other character has just been reported.
+        // Comparing ASCII letters is enough, because a name with any other character has just been
+        // reported.
         if !names.insert(name.to_ascii_lowercase()) {
             let message = format!("two entries have the name {name:?}; keep one");
             findings.add(rule::ENTRY_NAME_DUPLICATE, "", message);
@@ -267,16 +268,16 @@ fn check_local(
         findings.add(rule::ARCHIVE_INVALID, "", message);
         return None;
     };
-    // No stream states the length of a stored entry, so only this comparison ties its two sizes
-    // together.
+    // A stored entry has no stream that states its length. Therefore, only this comparison checks
+    // that its two sizes are equal.
     let stated = central.common.method == STORED && central.common.packed != central.common.size;
     if !agrees(central, &local) || stated || central.disk != 0 {
         let message =
             format!("the directory and the local header of {name} differ; write the archive again");
         findings.add(rule::ENTRY_HEADER_MISMATCH, "", message);
     }
-    // An extra field of the directory has already been reported, and one finding for each entry is
-    // enough.
+    // One finding for each entry is enough. If the directory also has an extra field, it has
+    // already been reported.
     if !local.extra.is_empty() && central.extra.is_empty() {
         let message = format!("{name} has an extra field in its local header; remove it");
         findings.add(rule::ENTRY_EXTRA_FIELD, "", message);

@@ -88,8 +88,7 @@ fn coded_steps(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteErro
 }
 
 /// Decodes a block into flat arrays. `values` is the number of values that the reader may still
-/// read; this function subtracts the number that it reads, also if the block has an error behind
-/// them.
+/// read. This function subtracts the number of values that it reads, even if an error follows them.
 pub(crate) fn decode(
     fields: &[StoredField],
     conditions: usize,
@@ -138,7 +137,7 @@ pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, Write
 fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> {
     let step = |(index, &value): (usize, &f64)| match quantise(field, index, value)? {
         Number::U8(q) => Ok(q),
-        // `quantise` returns a byte for this store.
+        // This case does not occur, because `quantise` returns a byte for such a field.
         _ => Ok(0),
     };
     values.iter().enumerate().map(step).collect()
@@ -248,7 +247,7 @@ pub(crate) fn split<'a>(
         };
         let (values, after) = if !field.list {
             rest.split_at(1)
-        // NaN and infinity fail these comparisons too, so the cast below is exact.
+        // NaN and infinity also fail these comparisons, so the cast below is exact.
         } else if first.fract() == 0.0 && first >= 0.0 && first <= after.len() as f64 {
             after.split_at(first as usize)
         } else {
@@ -307,8 +306,8 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
         }
     };
     match number {
-        // The value of a step is tested too, because these steps may not have passed the manifest's
-        // check, and the exponential of a large one is infinite.
+        // The value of the step is also tested. The check of the manifest may not have been passed,
+        // and the exponential of a large step is infinite.
         Some(number) if value.is_finite() && value_of(number, field.store).is_finite() => {
             Ok(number)
         }
@@ -320,8 +319,9 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
 /// 0 or above `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
-    // The logarithm is libm's: the standard library's differs in the last digit between systems,
-    // and a value near a half would be stored as another step there.
+    // The logarithm of `libm` is used, because the last digit of the standard library's logarithm
+    // differs between systems. With it, a value near the middle between two steps would be stored
+    // as another step on some systems.
     let q = libm::round((x - steps.offset) / steps.scale);
     (0.0..=last).contains(&q).then_some(q)
 }
@@ -365,7 +365,7 @@ fn put(out: &mut Vec<u8>, value: impl Encode) -> Result<(), WriteError> {
     }
 }
 
-/// Appends the values of packed or coded steps. After an error of the manifest, such as steps that
+/// Appends the values of packed or coded steps. If the manifest has an error, such as steps that
 /// are too large, a value may not be finite.
 fn put_steps(
     all: &[u8],
@@ -409,7 +409,8 @@ impl Reader<'_> {
         fields: &[StoredField],
         conditions: usize,
     ) -> Result<Vec<Vec<f64>>, BlockError> {
-        // For each condition the values of each field, with the length of a list.
+        // Contains, for each condition, the values of each field. For a list, the length comes
+        // first.
         let mut all = Vec::new();
         for condition in 0..conditions {
             let mut parts = vec![Vec::new(); fields.len()];
@@ -453,8 +454,8 @@ impl Reader<'_> {
         if field.list {
             flat.push(count as f64);
         }
-        // Counted before anything is read: a packed step takes as little as one bit in the file
-        // and eight bytes in memory.
+        // The values are counted before anything is read, because a packed step may take only one
+        // bit in the file, but takes eight bytes in memory.
         self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
         if let StoredAs::Packed(steps) = field.store {
             let all = self.steps(field, condition, count)?;
@@ -483,11 +484,12 @@ impl Reader<'_> {
         Ok(steps)
     }
 
-    /// Reads a list's length. Refuses a length for which the remaining bytes are too few.
+    /// Reads a list's length. Refuses a length if the remaining bytes are too few for it.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self.decode::<u64>().ok_or_else(|| truncated(field, condition))?;
-        // A longer code for the same length is refused, so that each block has only one encoding.
+        // If a shorter code for the same length exists, the code is refused, so that each block has
+        // only one encoding.
         if before - self.bytes.len() != shortest(length) {
             return Err(BlockError::Length { field: field.name.clone(), condition });
         }

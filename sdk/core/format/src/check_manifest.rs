@@ -115,7 +115,7 @@ fn not_a_hash(text: &str) -> String {
     format!("{text:?} is not a hash; write the 64 hexadecimal digits of BLAKE3")
 }
 
-/// Checks the conditions. Returns whether they keep all rules.
+/// Checks the conditions. Returns whether they follow all rules.
 fn check_conditions(conditions: &[Condition], findings: &mut Findings) -> bool {
     findings.require(!conditions.is_empty(), rule::CONDITIONS_EMPTY, "/conditions", || {
         "there is no condition; add one, or {} when speed and force are not known".to_owned()

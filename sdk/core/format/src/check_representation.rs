@@ -15,10 +15,10 @@ use htex_base::finding::Findings;
 
 /// Smallest allowed ratio of a step to the largest magnitude to which it is added. At a smaller
 /// ratio, rounding can change the step.
-// An epsilon is 2^-52, so this is the 2^-50 of the specification.
+// `EPSILON` is 2^-52, so this number is the 2^-50 of the specification.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
-/// Checks all representations. `are_sound` is whether the manifest's conditions keep all rules.
+/// Checks all representations. `are_sound` says whether the manifest's conditions follow all rules.
 pub(crate) fn check_representations(manifest: &Manifest, are_sound: bool, findings: &mut Findings) {
     let some = !manifest.representations.is_empty();
     findings.require(some, rule::REPRESENTATIONS_EMPTY, "/representations", || {
@@ -46,8 +46,9 @@ pub(crate) fn check_representations(manifest: &Manifest, are_sound: bool, findin
 }
 
 /// Checks the triangles of a representation. If a condition, or an index of a condition, breaks a
-/// rule (`are_sound` is false), this function checks only the corners, and whether speed and force
-/// of each condition are known. Further errors would follow from the broken rule.
+/// rule, `are_sound` is false. In this case the function checks only the corners, and whether the
+/// speed and force of each condition are known. Other errors could be mere consequences of the
+/// broken rule.
 fn check_triangles_of(
     representation: &Representation,
     conditions: &[Condition],
@@ -60,7 +61,7 @@ fn check_triangles_of(
     check_corners(at.len(), triangles)?;
     let mut places = Vec::with_capacity(at.len());
     for (condition, fitted) in at.iter().enumerate() {
-        // The check of conditions reports an index that does not exist.
+        // If the index does not exist, the check of conditions reports this.
         let Some(there) = conditions.get(fitted.condition) else { continue };
         let place = there.speed_mm_s.zip(there.force_n);
         places.push(place.ok_or(TrianglesError::Unknown { condition })?.into());
@@ -122,7 +123,7 @@ fn check_fields(
 }
 
 impl Steps {
-    /// Returns whether quantising the value of any step gives the same step again.
+    /// Returns whether each step's value is quantised to the same step again.
     pub(crate) fn are_valid(&self, last: u16) -> bool {
         let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
         let far_end = self.offset + self.scale * f64::from(last);
@@ -131,8 +132,8 @@ impl Steps {
             // The absolute error of a logarithm is at least the relative error of its argument.
             furthest = furthest.max(1.0);
         }
-        // Below the smallest normal number, values have fewer bits, and the logarithm of one no
-        // longer leads back to its step.
+        // Values below the smallest normal number have fewer bits, so the logarithm of such a value
+        // no longer gives its step.
         let least = if self.log { f64::MIN_POSITIVE } else { f64::MIN };
         positive
             && self.value(last).is_finite()
@@ -141,7 +142,7 @@ impl Steps {
     }
 }
 
-/// Checks the elements of `at`. Returns whether each one has an index of its own.
+/// Checks the elements of `at`. Returns whether no two of them have the same index.
 fn check_conditions(
     representation: &Representation,
     manifest: &Manifest,

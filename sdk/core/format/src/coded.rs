@@ -12,7 +12,7 @@ use crate::range_coder::{Chance, Coder, Decoder, Encoder};
 
 /// Largest number of steps in a coded list.
 pub(crate) const MOST_STEPS: usize = 0xFFFF;
-/// Length of the list to which the first list's length is compared.
+/// Expected length of the first list. The list's actual length is compared with it.
 const USUAL_LENGTH: i32 = 30;
 /// Largest step.
 const LAST: i32 = u8::MAX as i32;
@@ -25,13 +25,15 @@ const MOST_UNREST: i32 = 40;
 /// Unrests at which the next row of probabilities begins.
 const UNRESTS: [i32; ROWS - 1] = [4, 8, 14, 22, 34];
 const ROWS: usize = 6;
-/// Sizes from this one on are coded by their excess.
+/// A size of at least this number is coded as its excess over this number.
 const EXCESS: i32 = 15;
-/// Largest number of bits of an excess after its leading one. Larger excesses are in no valid code.
+/// Largest number of bits after the leading one bit of an excess. No valid code contains a larger
+/// excess.
 const MOST_EXCESS_BITS: u32 = 17;
 
-/// Probabilities, in 256ths, that an error is 0, and then that its size is 1, 2, 3, 4 and 5, and
-/// any larger one, if it is not smaller.
+/// Probabilities in 256ths. The first is the probability that an error is 0. The next five are the
+/// probabilities that its size is 1, 2, 3, 4 or 5, provided that it is not smaller. The last one
+/// applies to every larger size.
 type Row = [u8; 7];
 
 /// The tables were trained on the fits of Bands to 100 strokes of ten materials, 12 other
@@ -86,7 +88,8 @@ impl<const N: usize> Kind<N> {
         Self { rows: rows.map(Sizes::new), positive: Chance::new(positive) }
     }
 
-    /// Codes an error. A decoder is given `None`. Returns `None` if no valid code has this error.
+    /// Codes an error. A decoder is given `None`. Returns `None` if no valid code contains this
+    /// error.
     fn error(&mut self, coder: &mut impl Coder, unrest: i32, given: Option<i32>) -> Option<i32> {
         let row = UNRESTS.iter().filter(|from| unrest >= **from).count();
         let sizes = &mut self.rows[row.min(N - 1)];
@@ -107,8 +110,9 @@ impl<const N: usize> Kind<N> {
     }
 }
 
-/// Codes a number from 0 whose distribution is unknown: how many bits follow the leading one of the
-/// number plus 1, and then these bits. Returns `None` if there are more than [`MOST_EXCESS_BITS`].
+/// Codes a number of at least 0 whose distribution is unknown. It adds 1 to the number, codes how
+/// many bits follow the leading one bit of the sum, and then codes these bits. Returns `None` if
+/// there are more than [`MOST_EXCESS_BITS`] bits.
 fn excess(coder: &mut impl Coder, wanted: i32) -> Option<i32> {
     let wanted = wanted.max(0).unsigned_abs() + 1;
     let mut bits = 0;
@@ -121,7 +125,8 @@ fn excess(coder: &mut impl Coder, wanted: i32) -> Option<i32> {
     Some(bits_below_one(coder, bits, wanted) as i32 - 1)
 }
 
-/// Codes the bits after a number's leading one, the most significant first, and returns the number.
+/// Codes the bits after the leading one bit of a number, the most significant bit first. Returns
+/// the number.
 fn bits_below_one(coder: &mut impl Coder, bits: u32, wanted: u32) -> u32 {
     (0..bits)
         .rev()
@@ -131,9 +136,9 @@ fn bits_below_one(coder: &mut impl Coder, bits: u32, wanted: u32) -> u32 {
 /// Why steps cannot be read.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum CodeError {
-    /// The bytes are not what an encoder writes.
+    /// No encoder writes these bytes.
     Invalid,
-    /// There are more steps than may be read.
+    /// The number of steps exceeds the number that may be read.
     TooMany,
 }
 
@@ -144,11 +149,12 @@ pub(crate) struct FieldCoder {
     first: Sizes,
     alone: Kind<ROWS>,
     after_a_list: Kind<ROWS>,
-    /// The step of a scalar, or the length of a list, at the condition before.
+    /// The step of a scalar, or the length of a list, at the previous condition.
     before: i32,
-    /// The list that is expected, apart from a constant, in sixteenths of a step.
+    /// The expected list, in sixteenths of a step. The actual list may differ from it by a
+    /// constant.
     expected: Vec<i32>,
-    /// Sizes of the errors of the list before.
+    /// Sizes of the errors of the previous list.
     errors: Vec<i32>,
 }
 
@@ -199,7 +205,7 @@ impl FieldCoder {
         let is_expected = count == self.expected.len();
         let mut steps: Vec<u8> = Vec::with_capacity(count);
         let mut errors = Vec::with_capacity(count);
-        // How far the list is above the expected one, in sixteenths of a step.
+        // How far the list is above the expected list, in sixteenths of a step.
         let mut above = 0;
         let mut unrest = FIRST_UNREST;
         for i in 0..count {
@@ -243,8 +249,8 @@ impl FieldCoder {
         Ok(steps)
     }
 
-    /// Codes the first step of a list that has no list before it: how many bits it has, and the
-    /// bits after its leading one.
+    /// Codes the first step of a list if there is no previous list: the number of bits of the step,
+    /// and then the bits after its leading one bit.
     fn first_step(&mut self, coder: &mut impl Coder, wanted: i32) -> i32 {
         let wanted = wanted.unsigned_abs();
         let bits_wanted = u32::BITS - wanted.leading_zeros();
@@ -256,15 +262,15 @@ impl FieldCoder {
     }
 }
 
-/// Codes the steps of all coded fields. `lists` says of each field whether it is a list, and
-/// `conditions` has, for each condition, the steps of each field.
+/// Codes the steps of all coded fields. `lists` says for each field whether it is a list.
+/// `conditions` contains the steps of each field, for each condition.
 pub(crate) fn encode(lists: &[bool], conditions: &[Vec<Vec<u8>>]) -> Vec<u8> {
     let mut encoder = Encoder::default();
     let mut coders: Vec<FieldCoder> = lists.iter().map(|list| FieldCoder::new(*list)).collect();
     for fields in conditions {
         for (coder, steps) in coders.iter_mut().zip(fields) {
             let mut left = usize::MAX;
-            // An encoder returns what it was given.
+            // With an encoder, `code` returns the steps that it was given.
             let _ = coder.code(&mut encoder, Some(steps), &mut left);
         }
     }
@@ -283,7 +289,7 @@ pub(crate) fn decode(
     let mut fields =
         || coders.iter_mut().map(|coder| coder.code(&mut decoder, None, left)).collect();
     let steps = (0..conditions).map(|_| fields()).collect::<Result<Vec<Vec<Vec<u8>>>, _>>()?;
-    // Only what `encode` writes is valid: other bytes may give the same decisions.
+    // Other bytes may give the same decisions, but only the bytes that `encode` writes are valid.
     if encode(lists, &steps) == bytes { Ok(steps) } else { Err(CodeError::Invalid) }
 }
 
@@ -306,7 +312,7 @@ mod tests {
         assert!(
             include_str!("../../../../spec/htex-coded-1.md").contains("`FF FF FB 76 57 42 B5`")
         );
-        // Nothing is no bytes, and a step can have any size.
+        // A code without steps has no bytes, and a difference between steps can have any size.
         assert_eq!(encode(&[], &[vec![], vec![]]), [0u8; 0]);
         let jumps =
             [vec![vec![0, 255, 0, 128, 1]], vec![vec![255, 0, 255, 127, 254]], vec![vec![]]];
@@ -341,7 +347,7 @@ mod tests {
             prop_assert_eq!(decoded(&lists, conditions.len(), &bytes), Some(conditions.clone()));
             prop_assert_ne!(bytes.last(), Some(&0));
             prop_assert_eq!(decoded(&lists, conditions.len(), &[&bytes[..], &[0]].concat()), None);
-            // Whatever else can be read is the code of other steps.
+            // If other bytes can be read, they are the code of other steps.
             for changed in [other, [&bytes[..], &[junk]].concat(), {
                 let at = damage % (8 * bytes.len().max(1));
                 if let Some(byte) = bytes.get_mut(at / 8) {

@@ -66,8 +66,8 @@ fn scalar(fields: &[StoredField], index: usize, flat: &[f64]) -> Option<f64> {
     parts.get(index)?.1.first().copied()
 }
 
-/// Returns steps of which the smallest of these values is step 0, since a code takes fewest bits
-/// for 0. Returns the steps as they are if any value would change.
+/// Returns steps with another offset, so that the smallest of these values is step 0. A code takes
+/// fewest bits for 0. If this would change any value, returns the steps unchanged.
 fn from_least(steps: Steps, values: &[f64]) -> Steps {
     let of = |steps: Steps, value: f64| {
         (0..=u16::from(u8::MAX)).find(|q| steps.value(*q).to_bits() == value.to_bits())

@@ -86,7 +86,8 @@ fn in_library(path: &Path) -> Option<(&Path, &str)> {
     Some((library.as_ref(), name))
 }
 
-/// Programs for the web read no files, and others may have no reader of libraries.
+/// Programs for the web do not read files, and other programs may be built without the reader of
+/// libraries.
 #[cfg(not(all(feature = "library", not(target_family = "wasm"))))]
 fn in_library(_: &Path) -> Option<(&Path, &str)> {
     None

@@ -27,9 +27,9 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that apply to every kind of document. Each kind of document has its own error codes
-/// for violations of these rules, so each kind supplies its own set of rules. The comment on each
-/// field describes the problem that the rule reports.
+/// The rules that apply to every kind of document. Each kind of document supplies its own set of
+/// these rules, because each kind has its own error codes. The comment on each field describes the
+/// problem that the rule reports.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.
@@ -179,8 +179,8 @@ impl JsonSize {
                     size.depth = size.depth.max(open);
                     size.nodes += 1;
                 }
-                // The text may not be JSON and close more than it opens. The parser reports that
-                // later.
+                // The text may be invalid JSON that closes more brackets than it opens. The parser
+                // reports that later.
                 b']' | b'}' => open = open.saturating_sub(1),
                 b',' => size.nodes += 1,
                 _ => {}
@@ -210,7 +210,7 @@ fn numbers(version: &str) -> Option<(u64, u64)> {
 
 fn number(text: &str) -> Option<u64> {
     let number: u32 = text.parse().ok()?;
-    // `parse` accepts `+1` and `01`. Writing the number again shows whether the text is its only
-    // form.
+    // `parse` accepts `+1` and `01`. The number is written again and compared, because only one
+    // form of each number is allowed.
     (number.to_string() == text).then_some(number.into())
 }

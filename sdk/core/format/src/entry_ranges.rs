@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::zip_records;
 
-/// An archive entry: its name and the range of its data in the file, as stored (compressed or not).
+/// An archive entry: its name, and the range in the file of its data as stored (compressed or not).
 ///
 /// ```no_run
 /// let bytes = std::fs::read("sandpaper.htex")?;

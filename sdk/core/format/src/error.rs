@@ -91,13 +91,13 @@ pub enum WriteError {
     },
 }
 
-/// Error for a malformed text in the manifest, such as a licence.
+/// Error for a text in the manifest, such as a licence, that does not have the required form.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataError {
-    /// The SPDX list in this version of htex does not contain the id of a licence. The id may be in
-    /// a newer list.
+    /// The id of a licence is not in the SPDX list of this version of htex. It may be in a newer
+    /// list.
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]

@@ -104,8 +104,8 @@ enum Part {
 /// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// Returns an error if any field does not match. The error is a list of all mismatches; the
-/// mismatches of stored fields come first, in the order of the fields.
+/// Returns an error if any field does not match. The error lists all mismatches. The mismatches of
+/// stored fields come first, in the order of the fields.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,
@@ -189,8 +189,8 @@ impl FieldOrder<'_> {
     }
 }
 
-/// A function that looks up the descriptor of the model that plays a representation. The function
-/// returns `None` if the reader does not have that model.
+/// A function that returns the descriptor of a representation's model, or `None` if the reader does
+/// not have this model.
 pub type KnownModel<'a> = &'a dyn Fn(&Representation) -> Option<&'a Descriptor>;
 
 /// Adds a finding for each stored field that does not match its model's field. Representations of
@@ -211,7 +211,7 @@ pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings:
     }
 }
 
-/// Returns whether an asset was fitted by a newer version of a model than the known version. A
+/// Returns whether the version of the model that fitted an asset is newer than the known version. A
 /// newer version may have more fields.
 fn is_newer(fitted: &str, known: &str) -> bool {
     let [fitted, known] = [fitted, known].map(|version| Version::parse(version).ok());

@@ -26,14 +26,14 @@ pub struct Fluctuation {
     /// Standard deviation of the part at 8 to 32 Hz, in steps of 1/32 dB.
     #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 255)))]
     pub fast: u8,
-    /// Held-out error, decibels: the fluctuation was estimated from the first halves of the
-    /// recordings and played. The error is the RMS difference to the second halves, over their
-    /// modulation spectra.
+    /// Held-out error, decibels. To measure it, the fluctuation is estimated from the first halves
+    /// of the recordings and played. The error is the RMS difference between the modulation spectra
+    /// of the result and of the second halves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 100)))]
     pub held_out_error_db: Option<f64>,
-    /// Difference between the first and the second halves of the recordings, decibels: the same RMS
-    /// over modulation spectra. It says how much a second recording differs.
+    /// RMS difference between the modulation spectra of the first and of the second halves of the
+    /// recordings, decibels. It shows how much a second recording would differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(range(min = 0, max = 100)))]
     pub halves_error_db: Option<f64>,
@@ -49,7 +49,7 @@ impl Fluctuation {
     /// Rounds two standard deviations in decibels to numbers of steps, each at most 255. The errors
     /// are unknown. `None` if both standard deviations become 0.
     pub fn from_db(strength_db: [f64; 2]) -> Option<Self> {
-        // The conversion limits what is out of range, and turns NaN into 0.
+        // The conversion limits numbers that are out of range, and turns NaN into 0.
         let [slow, fast] = strength_db.map(|db| (db / Self::STEP_DB).round() as u8);
         (slow > 0 || fast > 0).then_some(Self { slow, fast, ..Self::default() })
     }
@@ -70,7 +70,8 @@ impl Fluctuation {
     }
 }
 
-/// Writes the standard deviations: `3.00 dB at 0.5 to 8 Hz and 1.53 dB at 8 to 32 Hz`.
+/// Writes the standard deviations: Writes, for example, `3.00 dB at 0.5 to 8 Hz and 1.53 dB at 8 to
+/// 32 Hz`.
 impl fmt::Display for Fluctuation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [slow, fast] = self.decibels();

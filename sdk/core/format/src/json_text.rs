@@ -9,8 +9,8 @@ use serde_json::{Map, Number, Value};
 
 use htex_base::finding::Place;
 
-/// Parses a JSON text and refuses duplicate keys, because some programs use the first value of such
-/// a key, and other programs use the last value. The parser itself limits the nesting depth to 128.
+/// Parses a JSON text and refuses duplicate keys. Some programs use the first value of a duplicate
+/// key, and other programs use the last one. The parser itself limits the nesting depth to 128.
 ///
 /// # Errors
 /// Returns an error if the text is not JSON, nests too deep, or has a key twice in an object.
@@ -20,7 +20,7 @@ use htex_base::finding::Place;
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "a": 1 }"#).is_err());
 /// ```
 pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
-    // The parser's error holds only a message, so the pointer leaves by this cell.
+    // The parser's error contains only a message, so this cell returns the pointer.
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let strict = Strict { place: &Place::Root, twice: &twice };

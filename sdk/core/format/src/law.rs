@@ -99,7 +99,7 @@ pub struct Exponent {
     pub exponent: f64,
     /// Source of the exponent.
     pub source: ExponentSource,
-    /// The measured value. `exponent` is usually a weighted mean of this value and the assumed
+    /// The measured value. `exponent` is usually the weighted mean of this estimate and the assumed
     /// exponent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<f64>,
@@ -133,14 +133,14 @@ impl ExponentSource {
     }
 }
 
-/// Smallest weight of a measured exponent in its mean with the assumed exponent. A measurement with
-/// a smaller weight is not used.
+/// Smallest weight of a measurement in the weighted mean of the measured and the assumed exponent.
+/// A measurement with a smaller weight is not used.
 const LEAST_WEIGHT: f64 = 0.1;
-/// Standard deviation between surfaces of each exponent: frequency over speed, level over speed,
-/// level over force.
+/// How much each exponent differs between surfaces, as a standard deviation. The order is:
+/// frequency over speed, level over speed, level over force.
 const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
-/// Exponents of the force for a tool and for an unknown contact: of an asset that states no law, and
-/// of new assets.
+/// Exponents of the force for a tool and for an unknown contact. The first constant is for assets
+/// that state no law, and the second is for new assets.
 const UNSTATED_FORCE: [f64; 2] = [0.07, 0.5];
 const NEW_FORCE: [f64; 2] = [0.0, 0.25];
 /// Largest allowed absolute value of an exponent.
@@ -176,7 +176,7 @@ impl Exponent {
     ) -> Self {
         let (own, others) = (spread * spread, error * error);
         let weight = own / (own + others);
-        // If the standard error is NaN, so is the weight, and the comparison is false.
+        // If the standard error is NaN, the weight is also NaN, and the comparison is false.
         let usable = weight >= LEAST_WEIGHT && estimate.is_finite();
         if !usable {
             return Self::assumed(assumed);
@@ -242,7 +242,7 @@ impl Law {
         }
     }
 
-    /// Returns the law that a new asset states if nothing was measured. This is the law of
+    /// Returns the law that a new asset states if no exponent was measured. This is the law of
     /// [`Self::assumed`] with another exponent of the force for two kinds of contact: 0 for a tool,
     /// and 0.25 for an unknown contact.
     ///
@@ -274,7 +274,8 @@ impl Law {
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);
         let anew = |i: usize, exponent: Exponent, assumed: Exponent| {
-            // The specification bounds a and b by 1 and c by 1.5, or by a larger assumption.
+            // The specification limits a and b to 1, and c to 1.5. If the assumed exponent is
+            // larger, it is the limit.
             let most = if i == 2 { 1.5 } else { 1.0 };
             let bounds = [0.0, assumed.exponent.max(most)];
             match (exponent.source, exponent.estimate, exponent.standard_error) {
@@ -295,8 +296,9 @@ impl Law {
             && let (ExponentSource::Measured, Some(own)) =
                 (level_speed.source, level_speed.estimate)
         {
-            // What is assumed beside a measured exponent of frequencies depends on a measurement
-            // that may be wrong. The level's own measurement does not.
+            // If the frequency exponent was measured, the assumed exponent of the level depends on
+            // this measurement, which may be wrong. The measured exponent of the level does not
+            // depend on it.
             level_speed.exponent = own.clamp(0.0, assumed.level_speed.exponent.max(1.0));
         }
         Self {
@@ -362,8 +364,9 @@ impl fmt::Display for Law {
 }
 
 /// Returns the assumed exponents of the level over speed and over force. They are interpolated
-/// between a surface whose frequencies do not change (frequency exponent 0) and a relief (frequency
-/// exponent 1). `force` has the exponents of the force for a tool and for an unknown contact.
+/// between two cases: a surface whose frequencies do not change (frequency exponent 0), and a
+/// relief (frequency exponent 1). `force` contains the exponents of the force for a tool and for an
+/// unknown contact.
 const fn assumed_levels(
     frequency_speed: f64,
     quantity: Quantity,

@@ -2,8 +2,7 @@
 //!
 //! `spec/htex-1.md` is the normative specification of the format. This crate does no signal
 //! processing and never loads a model. To check the parameters in a file, the crate compares the
-//! fields that the file stores with the fields in the model's descriptor. The caller provides the
-//! descriptor.
+//! file's fields with the fields in the model's descriptor. The caller provides the descriptor.
 //!
 //! ```
 //! use htex_format::{Limits, validate};

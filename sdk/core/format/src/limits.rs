@@ -26,8 +26,8 @@ pub struct Limits {
     /// 1,000,000. This count limits the number of values, because a manifest has at most one value
     /// more than it has opening brackets and commas.
     pub json_nodes: usize,
-    /// Number of conditions: 10,000. A player finds triangles between the conditions, and the time
-    /// for this grows faster than the number of conditions.
+    /// Number of conditions: 10,000. A player finds triangles between the conditions. The time that
+    /// this takes grows faster than the number of conditions.
     pub conditions: usize,
     /// Number of values in all parameter blocks and reference spectra together: 1,048,576.
     pub values: usize,

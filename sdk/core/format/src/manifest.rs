@@ -152,7 +152,8 @@ impl Manifest {
     /// not state it.
     pub fn held_out(&self, at: &AtCondition) -> Option<HeldOut> {
         let held_out_error_db = at.left_out?.0.get(Measure::ThirdOctave)?;
-        // The repeatability is that of the whole recording. Its halves differ by √2 times as much.
+        // The repeatability applies to the whole recording. The two halves of a recording differ by
+        // √2 times as much.
         let condition = self.conditions.get(at.condition)?;
         let second = condition.repeatability_third_octave_rms_db;
         let second = second.map(|db| db * std::f64::consts::SQRT_2).filter(|db| *db > 0.0);
@@ -300,13 +301,13 @@ pub struct Condition {
     #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub force_n: Option<f64>,
     /// Repeatability, decibels: an estimate of how much a second recording of the same surface
-    /// would differ. The estimate is the RMS, over nine bands, of the level differences between the
-    /// odd and the even blocks of the recording, divided by √2.
+    /// would differ. To compute it, the levels of the odd and of the even blocks of the recording
+    /// are compared in nine bands. The estimate is the RMS of the nine differences, divided by √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub repeatability_rms_db: Option<f64>,
-    /// Repeatability over third octaves instead of nine bands; otherwise the same as
-    /// `repeatability_rms_db`. From version 1.1 on.
+    /// The same as `repeatability_rms_db`, but computed over third octaves instead of nine bands.
+    /// From version 1.1 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(range(min = 0)))]
     pub repeatability_third_octave_rms_db: Option<f64>,
@@ -316,8 +317,8 @@ pub struct Condition {
     pub segments: Option<u64>,
 }
 
-/// Largest relative difference at which two speeds, or two forces, count as the same. People who
-/// try to keep a speed or a force constant deviate from it by about this much.
+/// Largest relative difference at which two speeds, or two forces, count as the same. When people
+/// try to keep a speed or a force constant, they deviate from it by about this much.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
@@ -352,15 +353,15 @@ pub struct Representation {
     /// Semantic version of the model that fitted the parameters.
     #[cfg_attr(feature = "schemars", schemars(regex(pattern = SEMANTIC_VERSION)))]
     pub model_version: String,
-    /// Parameter fields, in the order in which the flat parameter array contains them.
+    /// Parameter fields, in their order in the flat parameter array.
     #[cfg_attr(feature = "schemars", schemars(extend("uniqueItems" = true)))]
     pub fields: Vec<StoredField>,
     /// The conditions for which the parameter block contains parameters, in the order of the block.
     #[cfg_attr(feature = "schemars", schemars(length(min = 1), extend("uniqueItems" = true)))]
     pub at: Vec<AtCondition>,
-    /// The triangles between conditions in which a player interpolates. Their corners are indices
-    /// into `at`. If this list is empty, the rules of the specification determine the triangles.
-    /// Invalid triangles are an error.
+    /// A player interpolates in these triangles between conditions. Their corners are indices into
+    /// `at`. If this list is empty, the rules of the specification determine the triangles. Invalid
+    /// triangles are an error.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<Triangle>,
     /// Name of the archive entry that contains the parameter block.
@@ -387,8 +388,8 @@ pub struct StoredField {
     pub store: StoredAs,
 }
 
-/// Storage of a number. The integer kinds store a whole number `q` for the value `offset +
-/// scale·q`, or for `exp(offset + scale·q)` if `log` is set.
+/// Storage of a number. The integer kinds store a whole number `q`. It stands for the value `offset
+/// + scale·q`, or for `exp(offset + scale·q)` if `log` is set.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schemars", schemars(rename = "Store"))]
@@ -442,8 +443,8 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Representation {
-    /// Returns the error, in decibels, that a program compares to choose among an asset's
-    /// representations.
+    /// Returns the error of this representation, in decibels. Programs compare these errors to
+    /// choose among an asset's representations.
     ///
     /// This is the error at the first condition, where a voice starts. The first condition has no
     /// measured error if, for example, it was interpolated between recorded conditions. The result
@@ -462,8 +463,8 @@ impl Representation {
         first.or_else(|| self.largest_error_db(measure))
     }
 
-    /// Returns the largest error, in decibels, among the errors at all conditions. Returns `None`
-    /// if no condition has a measured error.
+    /// Returns the largest of the errors at all conditions, in decibels. Returns `None` if no
+    /// condition has a measured error.
     pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
         let measured = self.at.iter().filter_map(|at| at.error_db(measure));
         measured.max_by(f64::total_cmp)
@@ -498,8 +499,8 @@ pub struct AtCondition {
     /// How well the model agrees with the recorded spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Left-out error. A fit leaves out recorded blocks near this condition; the error compares the
-    /// fitted model with these blocks.
+    /// Left-out error. To measure it, a fit leaves out recorded blocks near this condition, and the
+    /// fitted model is compared with these blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }

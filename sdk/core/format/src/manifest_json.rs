@@ -58,7 +58,7 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
     Some(manifest)
 }
 
-/// Checks the quantity. Returns `None` if this version does not know it.
+/// Checks the quantity. Returns `None` if this version does not know the quantity.
 fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
     let Some(Value::String(name)) = manifest.get("quantity") else {
         return Some(());

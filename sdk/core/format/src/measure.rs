@@ -1,9 +1,9 @@
 //! Measures of how well a spectrum agrees with a recorded spectrum: a table with one row for each
 //! measure.
 //!
-//! From these rows, the project generates the keys of `quality` with their checks, schema and
-//! rounding. It also generates the columns of tables and reports, and the tables in the documents.
-//! The crate `htex-author` contains the functions that compute the measures.
+//! From these rows, the project generates the keys of `quality`, with their checks, schema and
+//! rounding. From the same rows come the columns of tables and reports, and the tables in the
+//! documents. The crate `htex-author` contains the functions that compute the measures.
 
 use std::fmt;
 
@@ -36,7 +36,7 @@ impl MeasureKind {
 /// The data from which a measure is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's magnitudes, as one would measure them in the output of the model's voice.
+    /// The model's magnitudes, as a measurement of the voice's output would give them.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,
@@ -55,8 +55,8 @@ pub struct MeasureRow {
     /// Definition for rendered samples; `None` if the measure is computed only from magnitudes.
     pub of_samples: Option<&'static str>,
     /// The case in which a comparison has no value for this measure, such as "for a silent
-    /// reference". Generated documentation writes "`None` " before these words. `None` if every
-    /// comparison has a value.
+    /// reference". Generated documentation puts the word "`None` " before this text. This field is
+    /// `None` if every comparison has a value.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,
@@ -153,7 +153,7 @@ measures! {
         played: Some("played/dB"),
         caption: Some("Nine-band error of the {}, RMS in dB (0 is the best, light)"),
     }
-    /// RMS of the nine band errors after one gain that equalises the total energy, decibels.
+    /// RMS of the nine band errors, decibels, after a gain has made the total energies equal.
     NineBandMatched {
         key: "band_error_matched_rms_db",
         name: "nine-band error after one gain",
@@ -172,7 +172,7 @@ measures! {
         played: Some("played-3rd/dB"),
         caption: Some("Third-octave error of the {}, RMS in dB (0 is the best, light)"),
     }
-    /// RMS over the bins of the difference of the magnitudes in decibels.
+    /// RMS, over the bins, of the differences between the magnitudes in decibels.
     LogSpectral {
         key: "log_spectral_distance_db",
         of_samples: Some("Log-spectral distance of rendered samples, decibels."),

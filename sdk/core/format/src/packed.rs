@@ -64,17 +64,18 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
         last = u8::try_from(i32::from(last) + unfold(z)).ok()?;
         steps.push(last);
     }
-    // Only the code that `pack` writes is valid: the best parameter, then zeros in the last byte.
+    // Only the code that `pack` writes is valid: it uses the best parameter, and the unused bits of
+    // the last byte are zero.
     let used = reader.at.div_ceil(8);
     (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
 }
 
-/// Returns the Rice parameter that takes the fewest bits. If several take equally few, returns the
-/// smallest of them.
+/// Returns the Rice parameter that takes the fewest bits. If several parameters take equally few
+/// bits, returns the smallest of them.
 fn parameter(steps: &[u8]) -> u32 {
     let all = 0..1 << PARAMETER_BITS;
-    // Of equal keys, `min_by_key` returns the first, which makes the smallest parameter win as
-    // specified.
+    // If keys are equal, `min_by_key` returns the first element. So the smallest parameter wins, as
+    // the specification demands.
     all.min_by_key(|&k| bits(steps, k)).unwrap_or(0)
 }
 
@@ -154,21 +155,21 @@ mod tests {
 
     #[test]
     fn the_bits_are_those_of_the_specification() {
-        // k = 1 and 40; then -1, 0, 1 and 3 as 1, 0, 2 and 6: 001 00101000 01 00 100 11100, and one
-        // zero.
+        // First come k = 1 and the step 40. The differences -1, 0, 1 and 3 follow as 1, 0, 2 and 6.
+        // The bits are 001 00101000 01 00 100 11100, and one zero.
         let steps = [40, 39, 39, 40, 43];
         assert_eq!(pack(&steps), [0b0010_0101, 0b0000_1001, 0b0011_1000]);
         assert_eq!(unpack(&pack(&steps), 5).unwrap(), (steps.to_vec(), 3));
-        // An empty list, and one step.
+        // An empty list, and a list of one step.
         assert_eq!(pack(&[]), [0u8; 0]);
         assert_eq!(pack(&[255]), [0b0001_1111, 0b1110_0000]);
     }
 
     #[test]
     fn other_forms_and_steps_out_of_range_are_refused() {
-        // A set bit after the last step.
+        // A bit after the last step is set.
         assert_eq!(unpack(&[0b0001_1111, 0b1110_0001], 1), None);
-        // k = 1 where 0 takes fewer bits.
+        // The code uses k = 1, but k = 0 would take fewer bits.
         assert_eq!(unpack(&[0b0011_1111, 0b1110_0000], 1), None);
         // 255 and one more.
         assert_eq!(unpack(&[0b0001_1111, 0b1111_1000], 2), None);

@@ -1,5 +1,6 @@
 //! How accurately a representation reproduces the recorded spectrum: the manifest's keys `quality`
-//! and `left_out`. The module [`crate::quality_json`] reads and writes both as JSON.
+//! and `left_out`. The module [`crate::quality_json`] reads and writes the values of both keys as
+//! JSON.
 
 use std::collections::BTreeMap;
 
@@ -123,21 +124,21 @@ impl Quality {
     }
 }
 
-/// Left-out error near a condition: the error of a fit on recorded blocks that the fit did not use.
-/// This type contains the measures whose [`crate::MeasureRow::left_out`] is set.
+/// Left-out error near a condition: a fit leaves out some recorded blocks, and is then compared
+/// with these blocks. This type contains the measures whose [`crate::MeasureRow::left_out`] is set.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 
-/// The held-out error of a representation at a condition: the third-octave error on recorded blocks
-/// that the fit did not use.
+/// The held-out error of a representation at a condition: the third-octave error, measured on
+/// recorded blocks that the fit did not use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct HeldOut {
     /// The error, decibels.
     pub held_out_error_db: f64,
-    /// The error divided by the difference between the odd and the even blocks of the recording.
-    /// The value 1 means that the error is as large as the difference that a second recording would
-    /// show. `None` if this difference is not known, or 0.
+    /// The error divided by the difference between the odd and the even blocks of the recording. If
+    /// the value is 1, the error is as large as the difference between two recordings. `None` if
+    /// this difference is not known, or 0.
     pub held_out_error: Option<f64>,
 }
 

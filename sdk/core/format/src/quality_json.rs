@@ -34,7 +34,7 @@ pub(crate) enum Content<'a> {
     Bands(&'a [f64]),
 }
 
-/// The place that stores the value of a key when the key is read.
+/// The place to which the value of a key is written when the object is read.
 pub(crate) enum Slot<'a> {
     Number(&'a mut Option<f64>),
     Bands(&'a mut Vec<f64>),
@@ -48,8 +48,8 @@ pub(crate) trait Entries: Default {
     /// Returns all keys in file order, including keys without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
-    /// Looks up a key without copying it. Returns the place that stores its value when it is read,
-    /// or `None` if the key is unknown.
+    /// Looks up a key without copying it. Returns the place to which its value is written, or
+    /// `None` if the key is unknown.
     fn slot(&mut self, key: &str) -> Option<(&'static str, Slot<'_>)>;
 }
 
@@ -143,7 +143,8 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Worded as serde's derived types do it. The reader of manifests turns it into "an object".
+        // The text has the wording of serde's derived types. The reader of manifests turns it into
+        // "an object".
         write!(f, "struct {}", T::NAME)
     }
 
@@ -202,8 +203,8 @@ macro_rules! in_json {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                // As a struct and not as a map, so that the reader of manifests refuses an array
-                // here.
+                // The object is deserialized as a struct and not as a map, so that the reader of
+                // manifests refuses an array here.
                 deserializer.deserialize_struct(Self::NAME, &[], Reader(PhantomData))
             }
         }

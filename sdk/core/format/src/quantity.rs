@@ -30,11 +30,11 @@ pub enum Quantity {
     Displacement,
 }
 
-/// The error for a name that is not one of the known names.
+/// The error for an unknown name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no {what} is called {name:?}; there are {}", known.join(", "))]
 pub struct UnknownName {
-    /// The kind of value that the name should denote, such as `quantity`.
+    /// What the name should denote, such as `quantity`.
     pub what: &'static str,
     /// The unknown name.
     pub name: String,
@@ -120,8 +120,8 @@ impl Quantity {
         }
     }
 
-    /// Formats a value with its unit, and with an SI prefix that leaves one to three digits before
-    /// the decimal point.
+    /// Formats a value with its unit. An SI prefix is chosen so that the number has one to three
+    /// digits before the decimal point.
     ///
     /// ```
     /// use htex_format::Quantity;

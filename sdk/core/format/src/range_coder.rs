@@ -2,19 +2,21 @@
 //! decision was, the fewer bits it takes.
 //!
 //! All arithmetic is in integers, so every machine writes the same bytes. The encoder writes the
-//! fewest bytes from which the decisions can be read, and drops zeros at the end. So a sequence of
-//! decisions has exactly one code.
+//! fewest bytes from which the decisions can be read, and drops zeros at the end. Therefore, each
+//! sequence of decisions has exactly one code.
 
 /// Bits of a probability: 65,536 stands for certainty.
 const BITS: u32 = 16;
 /// Smallest probability of either answer.
 const LEAST: u32 = 64;
-/// Number that is added to the count of decisions: the first decision after the start changes a
-/// probability by one part in `STARTED + DELAY`.
+/// Number that is added to the count of decisions. With it, the first decision after the start
+/// changes a probability by one part in `STARTED + DELAY`.
 const DELAY: u32 = 3;
-/// Decisions that a table's probability counts as having seen.
+/// Initial count of decisions: a probability from a table counts as if it had already adapted to
+/// this many decisions.
 const STARTED: u32 = 16;
-/// Largest count of decisions. From then on a probability follows about the last 80 decisions.
+/// Largest count of decisions. When the count has reached this number, a probability follows about
+/// the last 80 decisions.
 const MOST_SEEN: u32 = 80;
 /// The range is widened by a byte as soon as it is below this.
 const NARROW: u32 = 1 << 24;
@@ -44,11 +46,11 @@ impl Chance {
     }
 }
 
-/// Either direction of the coder. Code that describes a sequence of decisions in terms of this
-/// trait both writes and reads the sequence.
+/// Either direction of the coder. If code describes a sequence of decisions with this trait, the
+/// same code both writes and reads the sequence.
 pub(crate) trait Coder {
-    /// Codes a decision with this probability, out of 65,536, that it is no. An encoder writes
-    /// `yes` and returns it; a decoder ignores `yes` and returns what it reads.
+    /// Codes a decision. `no` is the probability, out of 65,536, that the decision is no. An
+    /// encoder writes `yes` and returns it; a decoder ignores `yes` and returns what it reads.
     fn code(&mut self, no: u32, yes: bool) -> bool;
 
     /// Codes a decision, and adapts its probability.
@@ -58,7 +60,7 @@ pub(crate) trait Coder {
         yes
     }
 
-    /// Codes a decision both answers to which are equally probable.
+    /// Codes a decision whose two answers are equally probable.
     fn toss(&mut self, yes: bool) -> bool {
         self.code(1 << (BITS - 1), yes)
     }
@@ -66,7 +68,8 @@ pub(crate) trait Coder {
 
 /// Writes decisions.
 pub(crate) struct Encoder {
-    /// The lower end of the range of numbers that remain possible, after the bytes in `out`.
+    /// After the bytes in `out`, a range of numbers remains possible. This is the lower end of the
+    /// range.
     low: u64,
     range: u32,
     out: Vec<u8>,
@@ -82,7 +85,8 @@ impl Encoder {
     /// Returns the bytes, without zeros at the end.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         let end = self.low + u64::from(self.range);
-        // Without a byte, and with up to four: the first number of the range that ends in zeros.
+        // Tries no further byte first, then one byte, and so on up to four. Each attempt takes the
+        // first number of the range whose remaining bits are zero.
         for bytes in 0..=4u32 {
             let rest = (1u64 << (32 - 8 * bytes)) - 1;
             let number = (self.low + rest) & !rest;
@@ -137,7 +141,7 @@ impl Coder for Encoder {
     }
 }
 
-/// Reads decisions. Behind the end of the bytes it reads zeros.
+/// Reads decisions. After the end of the bytes, it reads zeros.
 pub(crate) struct Decoder<'a> {
     bytes: &'a [u8],
     /// Distance of the number that was read from the lower end of the range.

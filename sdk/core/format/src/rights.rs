@@ -1,4 +1,5 @@
-//! Licence and author of a texture, as text that programs add to files made from the texture.
+//! Licence and author of a texture, as text. Programs add this text to files that they make from
+//! the texture.
 //!
 //! The text has two lines in the form of REUSE (<https://reuse.software>). Programs can find these
 //! lines in any comment or description. Every export of an asset uses this module, so that all
@@ -53,8 +54,8 @@ impl Rights {
         Self::new(manifest.license.as_deref(), manifest.author.as_deref())
     }
 
-    /// Combines the rights of several assets that are played together. The result joins all
-    /// licences with AND and names all authors.
+    /// Combines the rights of several assets that play together. The result joins all licences with
+    /// AND and names all authors.
     ///
     /// ```
     /// use htex_format::Rights;
@@ -68,7 +69,7 @@ impl Rights {
             licenses.extend(one.license.filter(|own| !licenses.contains(own)));
             authors.extend(one.author.filter(|own| !authors.contains(own)));
         }
-        // In an SPDX expression AND binds more strongly than OR.
+        // In an SPDX expression, AND takes precedence over OR.
         if licenses.len() > 1 {
             for license in licenses.iter_mut().filter(|own| has_or(own)) {
                 *license = format!("({license})");
@@ -148,7 +149,8 @@ impl Rights {
             return Ok(());
         }
         let end = wav.seek(SeekFrom::End(0))?;
-        // Chunks of RIFF begin at even bytes, and not every writer of WAV pads its last one.
+        // Chunks of RIFF begin at even bytes, but some writers of WAV files do not pad the last
+        // chunk.
         let pad = end % 2;
         let Ok(riff) = u32::try_from(end + pad + chunk.len() as u64 - 8) else {
             return Ok(());
@@ -171,7 +173,8 @@ impl Rights {
             return Ok(());
         }
         if !is_wav(path) {
-            // The program chose this name, so no link of that name in the folder is followed.
+            // The user did not choose this name, so if the folder contains a link of this name, the
+            // program does not follow it.
             let (folder, name) = OwnFolder::of_file(&license_file(path))?;
             let text = self.to_text();
             return folder.replace(&name, |file| file.write_all(text.as_bytes()));
@@ -192,7 +195,7 @@ impl Rights {
 }
 
 /// Returns the path of the licence file that belongs to the file at `path`: `path` followed by
-/// `.license`. A file that has no place for a licence needs such a licence file.
+/// `.license`. Files that have no place for a licence need such a file.
 #[must_use]
 pub fn license_file(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
@@ -223,7 +226,7 @@ fn has_or(license: &str) -> bool {
     words.any(|word| word == "OR" || word == "or")
 }
 
-/// Returns the text after a tag, up to the end of the line or of the comment that contains it.
+/// Returns the text after a tag, up to the end of the line or of the comment.
 fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     let rest = &text[text.find(tag)? + tag.len()..];
     let rest = rest.lines().next()?;
@@ -238,7 +241,8 @@ fn line(words: &str) -> Option<String> {
     for end in ENDS {
         plain = plain.replace(end, " ");
     }
-    // Character by character, because the limit is in bytes and may fall inside one.
+    // The text is shortened by whole characters, because the limit counts bytes and may lie inside
+    // a character.
     while plain.len() > MOST_BYTES {
         plain.pop();
     }

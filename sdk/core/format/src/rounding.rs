@@ -5,8 +5,8 @@ use crate::{Manifest, Measure, MeasureKind, Measures};
 
 /// Decimals of measures of agreement, of repeatability and of errors of the fluctuation.
 const DECIMALS: usize = 4;
-/// Decimals of these numbers in a coded asset, where they would take most of the bytes. A hundredth
-/// of a decibel is a tenth of what measures of rendered samples vary by.
+/// Decimals of these numbers in a coded asset, where they would take most of the bytes. Measures of
+/// rendered samples vary by ten times as much as a hundredth of a decibel.
 const DECIMALS_CODED: usize = 2;
 
 impl Manifest {
@@ -35,8 +35,8 @@ impl Manifest {
 }
 
 fn round_at(at: &mut AtCondition, decimals: usize) {
-    // Rounded by way of text: the nearest number to a decimal text stays the same when it is
-    // rounded again, while multiplying and dividing by a power of ten would round twice more.
+    // The number is rounded by writing it as text and reading it again, so that a second rounding
+    // does not change it. Multiplying and dividing by a power of ten would add two rounding errors.
     at.level_rms = reread(&format!("{:.8e}", at.level_rms), at.level_rms);
     if let Some(quality) = &mut at.quality {
         round_measures(&mut quality.by_magnitude, decimals);

@@ -20,14 +20,14 @@ pub(crate) const SEMANTIC_VERSION: &str = concat!(
 /// Pattern of a DOI, as [`crate::check_doi`] checks it.
 pub(crate) const DOI: &str = r"^10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+$";
 
-/// Pattern of an entry's name. Its parts consist of ASCII characters from space to `~` without
-/// `\\`, `:` and `/`, and no part is `.` or `..`.
+/// Pattern of an entry's name. Its parts consist of the ASCII characters from space to `~` except
+/// `\\`, `:` and `/`. No part is `.` or `..`.
 pub(crate) const ENTRY_NAME: &str = concat!(
     r"^(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+)",
     r"(/(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+))*$"
 );
 
-/// Returns the names of the container's own entries.
+/// Returns the names of the entries that belong to the container itself.
 pub(crate) fn own_entries() -> Value {
     json!({ "enum": [MIMETYPE, MANIFEST] })
 }

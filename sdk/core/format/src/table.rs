@@ -1,8 +1,8 @@
 //! Tables: arrays of objects that are written column by column.
 //!
 //! For example, a grid of 405 conditions stores 13 numbers for each condition. An array of objects
-//! repeats the key of every number. After compression with Deflate, these keys take more bytes than
-//! the whole table.
+//! repeats the key of every number. Even after compression with Deflate, these keys take more bytes
+//! than the whole table.
 
 #[cfg(feature = "write")]
 use std::collections::BTreeSet;
@@ -12,24 +12,26 @@ use serde_json::{Map, Value};
 use crate::CODED;
 use htex_base::finding::escape;
 
-/// Key of an element of `at` that is left out of a table if each element has its own index there.
+/// Key of the elements of `at`. A table leaves out this key if its value in each element equals the
+/// element's index.
 const CONDITION: &str = "condition";
 
-/// Largest number of rows of all tables in a manifest, the rows of nested tables included. In memory
-/// a row takes 630 bytes or more, and in the file as few as two.
+/// Largest total number of rows of all tables in a manifest, including nested tables. A row takes
+/// at least 630 bytes in memory, but may take only two bytes in the file.
 const MOST_ROWS: usize = 1 << 18;
 
 /// Largest number by which the values of a column are divided.
 const MOST_PER: f64 = 1e6;
-/// Numbers that a writer tries for this.
+/// Divisors that a writer tries.
 #[cfg(feature = "write")]
 const PER: [f64; 2] = [100.0, 10_000.0];
 
-/// Why a table stands for no array: a JSON pointer, and what is wrong there.
+/// The reason why a table does not encode an array: a JSON pointer, and what is wrong at this
+/// place.
 pub(crate) type TableError = (String, String);
 
-/// Replaces the tables of a coded manifest by the arrays for which they stand. Other manifests stay
-/// as they are.
+/// Replaces the tables of a coded manifest by the arrays that they encode. Does not change other
+/// manifests.
 pub(crate) fn expand_tables(manifest: &mut Value) -> Result<(), TableError> {
     if !requires_coded(manifest) {
         return Ok(());
@@ -53,8 +55,8 @@ pub(crate) fn expand_tables(manifest: &mut Value) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Writes the conditions, and the elements of `at`, of a manifest as tables. An array of which no
-/// key is in all objects stays an array.
+/// Writes a manifest's conditions, and the elements of `at`, as tables. If no key occurs in all
+/// objects of an array, it stays an array.
 #[cfg(feature = "write")]
 pub(crate) fn write_tables(manifest: &mut Value) {
     if let Some(conditions) = manifest.get_mut("conditions") {
@@ -90,7 +92,8 @@ fn expand(value: &mut Value, pointer: &str, left: &mut usize) -> Result<(), Tabl
     };
     let table = std::mem::take(table);
     let columns = columns_of(&table, pointer)?;
-    // Each row has a value in the file, so there are no more rows than the file has values.
+    // Each row has at least one value in the file. Therefore, the number of values in the file
+    // limits the number of rows.
     let Some(rows) = columns.values().find_map(full_column) else {
         let message = "no column has a value for each row; write an array of objects";
         return Err((pointer.to_owned(), message.to_owned()));
@@ -101,7 +104,7 @@ fn expand(value: &mut Value, pointer: &str, left: &mut usize) -> Result<(), Tabl
     Ok(())
 }
 
-/// Returns the values of a column that has one for each row.
+/// Returns the values of a column if it has a value for each row.
 fn full_column(column: &Value) -> Option<&Vec<Value>> {
     match column {
         Value::Object(part) if part.contains_key("rows") => None,
@@ -188,7 +191,8 @@ fn divided(value: &Value, per: f64) -> Option<Value> {
     }
 }
 
-/// Returns the rows that have a value in this column: those in `rows`, or all.
+/// Returns the rows that have a value in this column: the rows listed in `rows`, or all rows if
+/// there is no such list.
 fn places(
     part: &Map<String, Value>,
     count: usize,
@@ -197,7 +201,8 @@ fn places(
     let Some(rows) = part.get("rows") else {
         return Ok((0..count).collect());
     };
-    // An integer may be written with a point or an exponent. Beyond `count` the cast does not matter.
+    // An integer may be written with a decimal point or an exponent. For numbers above `count`, the
+    // result of the cast does not matter.
     let index =
         |row: &Value| row.as_f64().filter(|r| *r >= 0.0 && r.fract() == 0.0).map(|r| r as usize);
     let indices = rows.as_array().map(|rows| rows.iter().map(index).collect::<Option<Vec<_>>>());
@@ -262,8 +267,9 @@ fn column(key: &str, rows: &[&Map<String, Value>]) -> Value {
     Value::Object(part)
 }
 
-/// Returns a number with a point, or an array of them, multiplied by `per`. Returns `None` if a
-/// product is not whole, or if dividing it by `per` would not give the number again.
+/// Returns a number that is written with a decimal point, or an array of such numbers, multiplied
+/// by `per`. Returns `None` if a product is not whole, or if dividing it by `per` would not give
+/// the number again.
 #[cfg(feature = "write")]
 fn multiplied(value: &Value, per: f64) -> Option<Value> {
     match value {
@@ -271,9 +277,9 @@ fn multiplied(value: &Value, per: f64) -> Option<Value> {
         Value::Number(number) if number.is_f64() => {
             let number = number.as_f64()?;
             let whole = (number * per).round();
-            // Up to 2^53, where integers are exact.
+            // Only up to 2^53, because floats represent all integers up to this number exactly.
             let is_exact = whole.abs() <= 9_007_199_254_740_992.0;
-            // Compared by bits, because a negative zero would become 0.
+            // The bits are compared, because a negative zero would become 0.
             let is_same = (whole as i64) as f64 / per;
             (is_exact && is_same.to_bits() == number.to_bits()).then(|| (whole as i64).into())
         }

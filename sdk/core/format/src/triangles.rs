@@ -1,8 +1,8 @@
 //! Checks whether a player can interpolate in the triangles that a representation stores.
 //!
-//! The interpolated parameters change continuously with the motion if the triangles cover the
-//! convex hull of the conditions exactly once. Then no motion lies in two triangles, and every
-//! motion outside the hull has exactly one nearest point of the hull.
+//! If the triangles cover the convex hull of the conditions exactly once, the interpolated
+//! parameters change continuously with the motion. In this case no motion lies in two triangles,
+//! and every motion outside the hull has exactly one nearest point in the hull.
 //!
 //! Testing all pairs of triangles would take time proportional to the square of their number. The
 //! tests here take little more time than sorting the triangles. They put the corners of each
@@ -12,11 +12,11 @@
 //! - The edges that belong to only one triangle form one outline.
 //! - The outline turns left at each corner and goes around once.
 //!
-//! These tests are sufficient for the following reason. The edges between two triangles cancel, so
-//! the number of triangles that cover a point equals the number of times that the outline goes
-//! around the point. The outline goes once around each point inside, and not at all around a point
-//! outside. So exactly one triangle covers each point inside the outline, and no triangle covers a
-//! point outside.
+//! These tests are sufficient for the following reason. The edges between two triangles cancel each
+//! other. Therefore, the number of triangles that cover a point equals the number of turns of the
+//! outline around the point. The outline goes once around each point inside it, and not around any
+//! point outside it. So exactly one triangle covers each point inside the outline, and no triangle
+//! covers a point outside.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -75,8 +75,8 @@ impl TrianglesError {
     }
 }
 
-/// Flatness limit: a triangle's corners count as lying on a line if twice its area, divided by the
-/// square of its longest side, is at most this.
+/// Flatness limit. A triangle counts as flat if twice its area, divided by the square of its
+/// longest side, is at most this number.
 const FLAT: f64 = 1e-9;
 
 /// Checks triangles between conditions. Each condition is a speed (mm/s) and a force (newtons),
@@ -168,8 +168,9 @@ impl Turn {
     fn around([a, b, c]: [[f64; 2]; 3]) -> Self {
         let longest2 = distance2(a, b).max(distance2(b, c)).max(distance2(c, a));
         let area = cross(between(a, b), between(a, c));
-        // Written so that anything not known to be larger counts as flat: two equal points, or
-        // numbers too small to multiply.
+        // The condition is written so that a triangle counts as flat unless it is known not to be
+        // flat. Two equal points, and numbers whose products are too small to represent, also count
+        // as flat.
         if area > FLAT * longest2 {
             Self::Left
         } else if -area > FLAT * longest2 {
@@ -227,7 +228,8 @@ fn check_outline(
     let (mut corner, mut around, mut passed) = (first, 0.0, BTreeSet::new());
     while passed.insert(corner) {
         let three = [corner, next(corner), next(next(corner))].map(|i| places[i]);
-        // Straight on is allowed, because conditions may lie on a side of the hull.
+        // An outline may continue straight at a corner, because conditions may lie on a side of the
+        // hull.
         if Turn::around(three) == Turn::Right {
             let condition = next(corner);
             return Err(TrianglesError::Outline { condition });
@@ -236,8 +238,8 @@ fn check_outline(
         around += libm::atan2(cross(u, v), u[0] * v[0] + u[1] * v[1]);
         corner = next(corner);
     }
-    // A corner that was not passed lies on a second outline (a gap or a separate part). An angle
-    // sum above one turn means that the outline goes around twice.
+    // A corner that was not passed lies on a second outline (a gap or a separate part). If the sum
+    // of the angles exceeds one turn, the outline goes around more than once.
     let apart = outline.keys().copied().find(|other| !passed.contains(other));
     // The sum is a whole number of turns apart from rounding, so the limit lies between one turn
     // and two.

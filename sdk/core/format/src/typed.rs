@@ -1,6 +1,6 @@
 //! Deserializer from JSON values to Rust types that is stricter than serde's. It refuses an array
-//! in place of an object, an object in place of a string that names an enum variant, and `null` in
-//! place of a typed value.
+//! where an object is expected, an object where a string with the name of an enum variant is
+//! expected, and `null` where a typed value is expected.
 //!
 //! JSON is parsed only once: first the text becomes a JSON value without duplicate keys, and then
 //! this value becomes a Rust type. The conversion to the Rust type also yields the JSON pointers of
@@ -27,7 +27,7 @@ use serde_json::{Map, Value};
 
 use htex_base::finding::escape;
 
-/// Largest integer of a document: binary64 represents all integers up to it exactly.
+/// Largest integer in a document. A 64-bit float represents all integers up to this number exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Error for a value of the wrong type, with the JSON pointer to the value.
@@ -52,10 +52,10 @@ pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String
 /// The traversal of a value.
 #[derive(Default)]
 struct Walk<'de> {
-    /// Path to the value that is being read: the current child, or the parent once all its children
-    /// were read. After an error the path stays at the value with the error. [`Self::pointer`]
-    /// turns the path into a JSON pointer only on request. Doing so at each key would take 4.0
-    /// instead of 2.2 us for a manifest of 1 kB.
+    /// Path to the value that is being read: the current child, or the parent after all its
+    /// children were read. After an error, the path stays at the value with the error.
+    /// [`Self::pointer`] turns the path into a JSON pointer only on request. If this were done at
+    /// each key, reading a manifest of 1 kB would take 4.0 us instead of 2.2 us.
     way: RefCell<Vec<Step<'de>>>,
     /// Pointers to the unknown keys found so far.
     unknown: RefCell<Vec<String>>,
@@ -99,7 +99,7 @@ impl<'de> Walk<'de> {
     }
 }
 
-/// A value and the traversal that has reached it.
+/// A value, and the traversal that has reached this value.
 #[derive(Clone, Copy)]
 struct Typed<'de, 'w> {
     value: &'de Value,
@@ -152,8 +152,8 @@ impl<'de> Typed<'de, '_> {
     }
 }
 
-/// The elements of a list. The iterator reports how many elements are left, so that the memory for
-/// a list of numbers is allocated only once.
+/// The elements of a list. The iterator reports the number of remaining elements, so that the
+/// memory for a list of numbers is allocated only once.
 struct Items<'de, 'w> {
     values: Enumerate<slice::Iter<'de, Value>>,
     walk: &'w Walk<'de>,

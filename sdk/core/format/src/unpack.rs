@@ -36,8 +36,8 @@ pub(crate) const DEFLATED: u16 = 8;
 pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, Damage> {
     let bytes = match common.method {
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
-        // Only stored entries are left. The check of the headers has refused other methods, and a
-        // stored entry whose two sizes differ.
+        // Only stored entries are left. The check of the headers has already refused other methods.
+        // It has also refused stored entries whose two sizes differ.
         _ => Cow::Borrowed(data),
     };
     let crc = crc32(&bytes);
@@ -56,7 +56,7 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {
-    // One byte more than stated, to detect a stream that is longer than stated.
+    // The buffer is one byte longer than stated, to detect a stream that is longer than stated.
     let mut bytes = vec![0; size + 1];
     let mut stream = Decompress::new(false);
     let status = stream

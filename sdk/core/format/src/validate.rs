@@ -21,9 +21,8 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file. Reports every broken rule, except a rule that is broken
-/// only because another reported rule is broken. Never panics, and reads no more than `limits`
-/// allow.
+/// Validates the bytes of a `.htex` file. Reports every broken rule, except errors that are only
+/// consequences of another reported error. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
@@ -86,7 +85,8 @@ fn read(
     check_fields(&manifest, known, findings);
     let mut payload = Payload {
         archive,
-        // The manifest must not use the container's own entries for anything else.
+        // These two entries belong to the container, so the manifest must not name them for another
+        // purpose.
         claimed: BTreeSet::from([MIMETYPE.to_owned(), MANIFEST.to_owned()]),
         values_left: limits.values,
         findings,
@@ -177,8 +177,8 @@ impl<'a> Payload<'a, '_> {
     fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
         let reference = manifest.reference.as_ref()?;
         let bytes = self.entry(&reference.file, format_args!("/reference/file"))?;
-        // The entry has been claimed before, so that an invalid band does not also make it
-        // unreferenced.
+        // The entry has already been claimed above. Otherwise, an invalid band would also cause a
+        // finding about an unreferenced entry.
         let points = grid_points(manifest.band)?;
         let conditions = manifest.conditions.len();
         let values = points.saturating_mul(conditions);
@@ -191,7 +191,7 @@ impl<'a> Payload<'a, '_> {
             self.findings.add(rule::REFERENCE_LENGTH, "/reference/file", message);
             return None;
         }
-        // The blocks come first and have taken their part of the limit.
+        // The parameter blocks were read first, and have already used a part of the limit.
         if values > self.values_left {
             let message = format!("the reference's {values} numbers exceed the limit");
             self.findings.add(rule::VALUES_TOO_MANY, "/reference/file", message);

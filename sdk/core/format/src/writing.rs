@@ -26,7 +26,8 @@ impl Asset {
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let manifest = self.manifest.rounded();
         let mut findings = Findings::default();
-        // The reader below checks this too, but the encoders in between rely on a valid manifest.
+        // The reader below also checks the manifest, but the encoders before it need a valid
+        // manifest.
         check_manifest(&manifest, &mut findings);
         if findings.has_errors() {
             let findings = findings.into_list();
@@ -46,8 +47,9 @@ impl Asset {
         let plugins = manifest.plugins.iter().zip(&self.plugins);
         let archived = || {
             let mut archive = ZipWriter::default();
-            // First and stored, so that the media type is at byte 38, where programs look for it:
-            // behind 30 bytes of header and the 8 letters of the name.
+            // This entry is the first and is not compressed, so that the media type is at byte 38,
+            // where programs look for it. Before it come 30 bytes of header and the 8 letters of
+            // the name.
             archive.store(MIMETYPE, MEDIA_TYPE.as_bytes())?;
             archive.deflate(MANIFEST, &json)?;
             for (name, bytes) in blocks.into_iter().chain(reference) {

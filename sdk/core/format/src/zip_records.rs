@@ -58,7 +58,7 @@ pub(crate) struct Local<'a> {
 /// Returns the last end record of the file. In an asset, this record is the last 22 bytes.
 pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     let last = bytes.len().checked_sub(END_BYTES)?;
-    // A comment follows the record and has at most 65,535 bytes, so the record cannot begin
+    // Only a comment of at most 65,535 bytes may follow the record, so the record cannot begin
     // earlier.
     let first = last.saturating_sub(usize::from(u16::MAX));
     let at = (first..=last).rev().find(|&at| u32_at(bytes, at) == Some(END))?;

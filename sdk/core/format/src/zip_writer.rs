@@ -97,7 +97,7 @@ fn put_central(out: &mut Vec<u8>, common: &Common, name_len: u16, name: &str, lo
     put_u32(out, CENTRAL);
     put_u16(out, [UNIX | version(common), version(common)]);
     put_common(out, common);
-    // No extra field, no comment, first disk, no internal attributes.
+    // The zeros mean: no extra field, no comment, the first disk, no internal attributes.
     put_u16(out, [name_len, 0, 0, 0, 0]);
     put_u32(out, ATTRIBUTES);
     put_u32(out, local_at);

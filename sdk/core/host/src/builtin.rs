@@ -1,4 +1,5 @@
-//! Models linked into this program. The host calls them through their tables of C functions.
+//! Models linked into this program. The host calls these models through their tables of C
+//! functions.
 
 use std::sync::{Arc, LazyLock};
 
@@ -19,7 +20,8 @@ pub(crate) fn models() -> &'static [LoadedModel] {
 }
 
 /// The functions that render several voices of a model in one call, for large scenes. A program for
-/// web pages leaves them out, because a page plays few voices and should not download them.
+/// web pages leaves these functions out: a page plays only few voices, so it should not have to
+/// download them.
 #[cfg(not(target_family = "wasm"))]
 macro_rules! voices {
     ($model:ident) => {
@@ -33,9 +35,9 @@ macro_rules! voices {
     };
 }
 
-/// The tables of a model's crate. Only programs that fit models include the function that fits. In
-/// other programs nothing refers to this function, so the linker drops it with everything that it
-/// uses.
+/// The tables of a model's crate. Only programs that fit models contain the function `fit`. In
+/// other programs, nothing refers to this function, so the linker removes it, and also the code
+/// that only this function uses.
 macro_rules! model {
     ($model:ident) => {{
         #[cfg(feature = "fit")]
@@ -53,9 +55,9 @@ macro_rules! model {
     }};
 }
 
-/// Lists the built-in models. To add a built-in model, add it here: every program that links this
-/// crate then contains it. As for a plugin, the model's descriptor contains everything else that
-/// programs need.
+/// Lists the built-in models. To add a built-in model, add it here. Then every program that links
+/// this crate contains the model. The model's descriptor contains everything else that programs
+/// need, as for a plugin.
 fn tables() -> Vec<TableModel> {
     vec![
         model!(htex_ar),
@@ -69,8 +71,8 @@ fn tables() -> Vec<TableModel> {
     ]
 }
 
-/// Every model is loaded, and states a usual range for each parameter, which the studio's sliders
-/// need.
+/// Every model is loaded, and states a usual range for each parameter. The studio needs these
+/// ranges for its sliders.
 #[cfg(test)]
 #[test]
 fn every_model_is_loaded_and_has_usual_ranges() {
@@ -102,7 +104,7 @@ unsafe extern "C" fn without_fits(
     htex_model::Status::CannotFit as i64
 }
 
-/// The [`without_fits`] of the extension `htex.motion/1`.
+/// The same as [`without_fits`], but for the extension `htex.motion/1`.
 #[cfg(not(feature = "fit"))]
 unsafe extern "C" fn without_fits_at(
     _band_low_hz: f64,

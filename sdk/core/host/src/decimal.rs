@@ -1,7 +1,7 @@
 //! Reads decimal numbers from text.
 //!
-//! This module uses the JSON parser, which every program that opens assets already contains. The
-//! number parser of the standard library contains a large table, which would add 13 kB to the
+//! This module uses the JSON parser, because every program that opens assets already contains it.
+//! The number parser of the standard library contains a large table, which would add 13 kB to the
 //! compressed npm package.
 
 /// Reads a number such as `1.5`, `.5` or `2e-3`.

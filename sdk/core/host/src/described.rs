@@ -14,7 +14,8 @@ use crate::{HostError, LoadedModel, Origin};
 /// Says why no call succeeds.
 const WHY: &[u8] = b"only the model's descriptor was read";
 
-/// Returns the model of a plugin file by its descriptor; `None` if the file does not carry it.
+/// Returns a model that has only the descriptor in a plugin file. Returns `None` if the file
+/// contains no descriptor.
 pub(crate) fn model(path: &Path) -> Result<Option<LoadedModel>, HostError> {
     let json = read_description(path).map_err(HostError::loading(path.display()))?;
     let Some(json) = json else { return Ok(None) };
@@ -28,7 +29,7 @@ pub(crate) fn model(path: &Path) -> Result<Option<LoadedModel>, HostError> {
     Ok(Some(LoadedModel::of(origin(path.to_owned()), descriptor, Arc::new(Described))))
 }
 
-/// A model none of whose functions can be called.
+/// A model whose functions cannot be called.
 struct Described;
 
 fn refuse() -> i64 {

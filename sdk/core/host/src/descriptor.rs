@@ -46,8 +46,8 @@ pub enum DescriptorError {
     /// The sweep of the fit options has too many combinations.
     #[error("a sweep of the fit options has {count} combinations; {MAX_SWEEP} are allowed")]
     Sweep {
-        /// Number of combinations: the product of the numbers of values of all options, at most
-        /// `usize::MAX`.
+        /// Number of combinations: the number of values of each option, multiplied over all
+        /// options. At most `usize::MAX`.
         count: usize,
     },
     /// Two fields have the same name.
@@ -56,7 +56,7 @@ pub enum DescriptorError {
 }
 
 /// Largest number of combinations of the options' sweep values, and largest number of values in
-/// each list. The limit keeps a descriptor from making a sweep take any amount of memory.
+/// each list. Without this limit, a descriptor could make a sweep use any amount of memory.
 const MAX_SWEEP: usize = 1_000;
 
 /// Reads a descriptor from JSON and checks it. Every loader of models uses this function.

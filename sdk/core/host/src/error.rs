@@ -5,7 +5,7 @@ use std::fmt::Display;
 use htex_dsp::resample::UnusableRates;
 use htex_model::Status;
 
-/// Maximum number of bytes of a model's text in a message.
+/// Maximum number of bytes that a message contains of a model's text.
 const LONGEST_SHOWN: usize = 4096;
 
 /// Prepares a model's text for a message: escapes control characters, so that the text cannot
@@ -36,7 +36,7 @@ pub enum HostError {
         /// The names in the registry.
         known: String,
     },
-    /// A module contains a different model from the one that its asset or recipe declares.
+    /// A module does not contain the model that its asset or recipe declares.
     #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.
@@ -56,7 +56,7 @@ pub enum HostError {
         path: String,
         name: String,
     },
-    /// A file that the user did not name, e.g. a file that a recipe names, is not a WASM module.
+    /// A file is not a WASM module, and it was not named by the user but, for example, by a recipe.
     #[error(
         "{path}: it is no WASM module; only the user may name a native library, because it runs with all of their rights: if you trust it, give it \
          yourself (`--plugin FILE`, `plugins` in Python)"

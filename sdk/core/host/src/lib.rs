@@ -2,8 +2,8 @@
 //! the same way, wherever they come from.
 //!
 //! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]). [`Search`]
-//! lists the places in which this crate looks for models. This crate calls models through the
-//! functions of the model ABI, even if they are built in, and checks the results of each call. If a
+//! lists the places in which this crate looks for models. This crate calls all models, even the
+//! built-in ones, through the functions of the model ABI, and checks the results of each call. If a
 //! result is invalid, the call returns an error, and the program can call the model again.
 //!
 //! ```
@@ -49,7 +49,7 @@ mod together;
 mod voice;
 #[cfg(feature = "wasm")]
 mod wasm;
-// Normally used in a browser or in Node.js, which run the modules.
+// This module is normally used in a browser or in Node.js, whose engine runs the WASM modules.
 #[cfg(test)]
 #[path = "browser/sections.rs"]
 mod sections;

@@ -3,7 +3,8 @@
 //! Each module has limits for its memory, tables, stack, number of voices, running time and
 //! compilation, and optionally for its number of instructions. All modules together have limits for
 //! their total time, memory and number of instances. The tests in
-//! `sdk/core/host/tests/it/limits.rs` exceed each limit once.
+//! `sdk/core/host/tests/it/limits.rs` contain one case for each limit, in which the limit is
+//! exceeded.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -38,8 +39,8 @@ pub struct WasmLimits {
     /// s.
     pub call: Duration,
     /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s. No device waits
-    /// that long for samples, so the limit stops no useful call. It still ends an endless loop
-    /// soon.
+    /// that long for samples, so the limit does not stop any useful call. But it soon ends an
+    /// endless loop.
     pub render: Duration,
     /// Maximum number of WASM instructions of one call, or `None` for no limit. Unlike a time
     /// limit, this limit stops the same calls on every machine. Default `None`: the time limits
@@ -71,10 +72,10 @@ pub struct WasmLimits {
     pub guards: bool,
 }
 
-/// The engine that runs modules. The variants differ in which resources of the process the engine
-/// uses: threads and signal handlers. While a module is loaded, every engine except `Off` has one
-/// thread, which stops calls at their time limit. A browser runs modules with its own engine; `Off`
-/// turns that engine off, and the other variants turn it on.
+/// The engine that runs modules. The engines of the variants use different resources of the
+/// process: threads and signal handlers. While a module is loaded, every engine except `Off` has
+/// one thread, which stops calls at their time limit. A browser runs modules with its own engine;
+/// `Off` turns that engine off, and the other variants turn it on.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -110,9 +111,9 @@ pub enum WasmEngine {
 #[non_exhaustive]
 pub struct WasmTotal {
     /// Time for compilation and for all calls except calls to voices. While the program runs, the
-    /// remaining time grows by a tenth of the elapsed time, up to this total. Each voice has a
-    /// separate allowance. The allowance starts at one second; each rendered sample adds ten times
-    /// the sample's duration, up to one second in total.
+    /// remaining time grows by a tenth of the elapsed time, but never above this total. Each voice
+    /// has a separate allowance. The allowance starts at one second. Each rendered sample adds ten
+    /// times the sample's duration, but the allowance never exceeds one second.
     pub time: Duration,
     /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
@@ -242,8 +243,8 @@ impl WasmLimits {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCache {
-    /// The folder `$HTEX_CACHE_DIR/wasm`. If the variable is not set, `htex/wasm` in the user's
-    /// cache folder.
+    /// The folder `$HTEX_CACHE_DIR/wasm`. If the variable is not set, the cache is `htex/wasm` in
+    /// the user's cache folder.
     User,
     /// The given folder. No other user may have permission to write to the folder.
     Dir(PathBuf),

@@ -20,7 +20,7 @@ pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
 
 /// Id of the ABI extension for models that follow the motion of the finger.
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
-/// Length of the parameter buffer in the first call of a function that returns parameters.
+/// When a function returns parameters, the first call has a parameter buffer of this length.
 const USUAL_PARAMETERS: usize = 256;
 
 /// A model that can be called. Cloning this value does not load the model again.
@@ -100,8 +100,8 @@ impl LoadedModel {
     }
 
     /// Loads a model from a file that the user did not name. The file must be a WASM module,
-    /// whatever its name. Only this function decides which files the host loads when another file,
-    /// such as a recipe, names them.
+    /// whatever its name is. If a file, such as a recipe, names another file, only this function
+    /// decides whether the host loads that file.
     pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if !is_module(path).map_err(HostError::loading(path.display()))? {
             return Err(HostError::NotModule { path: path.display().to_string() });
@@ -180,8 +180,9 @@ impl LoadedModel {
     }
 
     /// Fits the model to a spectrum. `input.options` must contain one value for each option of the
-    /// descriptor, in their order; [`Self::options`] makes this list. Only models that follow the
-    /// motion ([`Self::follows_motion`]) receive `input.condition`. Needs the feature `fit`.
+    /// descriptor, in the descriptor's order. [`Self::options`] makes this list. Only models that
+    /// follow the motion ([`Self::follows_motion`]) receive `input.condition`. Needs the feature
+    /// `fit`.
     ///
     /// ```
     /// use htex_host::{Band, FitCondition, FitInput, Registry};
@@ -216,7 +217,7 @@ impl LoadedModel {
             );
             return Err(self.error(call, Status::InvalidArgument, what));
         }
-        // NaN, so that a level that the model does not write is an error.
+        // The initial value is NaN, so that it is an error if the model does not write a level.
         let mut level_rms = f64::NAN;
         let parameters = self.numbers(call, |out| self.raw.fit(input, out, &mut level_rms))?;
         if !level_rms.is_finite() || level_rms < 0.0 {
@@ -238,7 +239,8 @@ impl LoadedModel {
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, HostError> {
         let call = "magnitude";
-        // NaN, so that magnitudes that the model does not write are an error.
+        // The initial values are NaN, so that it is an error if the model does not write all
+        // magnitudes.
         let mut magnitude = vec![f64::NAN; frequency_hz.len()];
         let (raw, band) = (&self.raw, band);
         let answer = raw.magnitude(parameters, band, frequency_hz, &mut magnitude);
@@ -301,8 +303,8 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Returns whether `rate_hz` is the model's own rate, i.e. the rate that the model returns for
-    /// every requested rate. To find out, this function requests a much higher rate.
+    /// Returns whether `rate_hz` is the model's own rate, i.e. whether the model returns this rate
+    /// for every requested rate. To test this, the function requests a much higher rate.
     ///
     /// # Errors
     /// Returns the errors of [`Self::voice_rate_hz`].
@@ -408,9 +410,9 @@ impl LoadedModel {
         self.error(call, Status::from_code(status), reason(last_error))
     }
 
-    /// Makes a call that returns parameters. The first call has a buffer of the usual size; if that
-    /// is too small, a second call has a larger one. The result must be one parameter set that
-    /// matches the descriptor.
+    /// Makes a call that returns parameters. The first call has a buffer of the usual size. If this
+    /// buffer is too small, a second call has a larger one. The result must be one parameter set
+    /// that matches the descriptor.
     fn numbers(
         &self,
         call: &'static str,
@@ -459,7 +461,8 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
     let mut bytes = vec![0; len];
     match call(&mut bytes) {
         status if status < 0 => Err(TextError::Status(status)),
-        // The buffer has the first length, so the text of another length would be cut.
+        // The buffer has the length that the first call returned, so a longer text would be cut
+        // off.
         second if second != first => Err(TextError::Broken(format!(
             "its text has {first} bytes in one call and {second} in the next"
         ))),

@@ -1,8 +1,8 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
-//! A native library runs with all the rights of this program, so the host loads only libraries that
-//! the user named or put into a plugin folder. The host never unloads such a library, because
-//! voices and tables contain pointers into it.
+//! A native library runs with all the rights of this program. Therefore, the host loads only
+//! libraries that the user named or put into a plugin folder. The host never unloads such a
+//! library, because voices and tables contain pointers into it.
 
 use std::path::Path;
 
@@ -30,8 +30,8 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     };
     // SAFETY: every version of the ABI has this function with this type.
     let abi_version: AbiVersion = unsafe { symbols.get("htex_model_abi_version")? };
-    // Before the other names are looked up: in another major version they may be missing, or have
-    // other types.
+    // The marker is checked before the other names are looked up, because in another major version
+    // these names may be missing or have other types.
     check_marker(&origin, abi_version())?;
     // SAFETY: a library with this marker exports these names with these types.
     let table: &'static ModelTable = Box::leak(Box::new(unsafe {

@@ -42,7 +42,7 @@ pub enum Note {
     },
     /// A file in a plugin folder could not be loaded.
     Broken { path: PathBuf, error: HostError },
-    /// The host cannot list the model of a native library in a plugin folder, because only the
+    /// A plugin folder contains a native library whose model the host cannot list, because only the
     /// library's own code could return the model's descriptor.
     Undescribed { path: PathBuf },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's plugin folder, could not be read.

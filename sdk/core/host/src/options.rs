@@ -46,7 +46,7 @@ impl LoadedModel {
 /// Reads a value of an option.
 ///
 /// # Errors
-/// What the option takes, if the value is something else.
+/// If the option does not allow the value, returns a text that says which values it allows.
 fn parse(option: &FitOption, text: &str) -> Result<f64, String> {
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);

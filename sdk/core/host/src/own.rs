@@ -13,12 +13,12 @@ use crate::runtime::{RuntimeModel, RuntimeModelAdapter, RuntimeVoice};
 /// The function [`MotionVoice::set_motion`] of a voice.
 type SetMotion<V> = fn(&mut V, Motion);
 
-/// A type that implements [`Model`], as an object.
+/// A model object for a type that implements [`Model`].
 struct TypeModel<M: Model> {
     set_motion: Option<SetMotion<M::Voice>>,
 }
 
-/// The voice of a type that implements [`Model`], as an object.
+/// A voice object for the voice of a type that implements [`Model`].
 struct TypeVoice<V> {
     voice: V,
     set_motion: Option<SetMotion<V>>,

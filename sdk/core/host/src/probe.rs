@@ -1,7 +1,8 @@
 //! For checkers of models: calls a model with buffers of any size, and with invalid arrays that a
 //! host never passes. Apps do not need these functions.
 //!
-//! These functions hardly check what the model returns: only a negative number becomes an error.
+//! These functions do not check the model's results, except that a negative number becomes an
+//! error.
 
 use htex_dsp::grid::Band;
 #[cfg(feature = "fit")]
@@ -10,7 +11,7 @@ use htex_model::FitInput;
 use crate::table::TableModel;
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Stated length of an array that does not exist.
+/// Length that a call states for an array that does not exist.
 const LEN: usize = 4;
 /// A handle that belongs to no voice.
 const NO_HANDLE: i64 = i64::MAX - 1;
@@ -40,8 +41,8 @@ pub struct Unusable {
 }
 
 impl LoadedModel {
-    /// Fits the model. Writes the level to `level_rms`, and the parameters to `parameters`, which
-    /// may be too short. Returns the number of parameters of the fit.
+    /// Fits the model. Writes the level to `level_rms`, and the parameters to `parameters`. The
+    /// array `parameters` may be too short. Returns the number of parameters of the fit.
     ///
     /// # Errors
     /// Returns an error if the model returns one.
@@ -71,7 +72,7 @@ impl LoadedModel {
     }
 
     /// Interpolates concatenated parameter sets, and writes the result to `parameters`. Returns the
-    /// length of the whole result, also if `parameters` is shorter.
+    /// length of the whole result, even if `parameters` is shorter.
     ///
     /// # Errors
     /// Returns an error if the model returns one.
@@ -85,7 +86,7 @@ impl LoadedModel {
         self.check("interpolate", answer)
     }
 
-    /// Writes the descriptor to `out`. Returns the length of the whole descriptor, also if `out` is
+    /// Writes the descriptor to `out`. Returns the length of the whole descriptor, even if `out` is
     /// shorter.
     ///
     /// # Errors
@@ -111,9 +112,8 @@ impl ModelVoice {
         self.done("voice_render", answer)
     }
 
-    /// Calls `htex_voices_1_render` with the voices at these indices. The same index may occur
-    /// twice, and an index need not belong to a voice. Returns `None` if the model does not have
-    /// the extension.
+    /// Calls `htex_voices_1_render` with the voices at these indices. An index may occur twice, or
+    /// belong to no voice. Returns `None` if the model does not have the extension.
     pub fn render_any_together(
         voices: &mut [Self],
         numbers: &[usize],
@@ -129,8 +129,8 @@ impl ModelVoice {
         if out.len() < handles.len() * frames {
             return None;
         }
-        // SAFETY: live slices, with `frames` samples for each handle; the exclusive reference keeps
-        // the voices to this thread.
+        // SAFETY: the slices are live, with `frames` samples for each handle. The exclusive
+        // reference ensures that only this thread uses the voices.
         Some(unsafe { render(handles.as_ptr(), handles.len(), out.as_mut_ptr(), frames) })
     }
 }
@@ -156,7 +156,7 @@ impl Answers {
 }
 
 /// Calls the functions of a table with unusable arrays. A misaligned pointer points into a live
-/// array, so that a model that wrongly uses it damages nothing else.
+/// array. If a model wrongly uses the pointer, it damages only this array.
 impl TableModel {
     pub(crate) fn probe(&self, a: &ProbeArguments<'_>) -> Vec<Unusable> {
         let mut answers = Answers(Vec::new());
@@ -176,7 +176,7 @@ impl TableModel {
         answers.add("last_error", "null `out`", unsafe { (table.last_error)(null, LEN) });
         answers.0.push(Unusable {
             what: "`extension` with null `id`".to_owned(),
-            // SAFETY: null, which is no extension.
+            // SAFETY: null, which is not the id of an extension.
             answer: unsafe { (table.extension)(null, LEN) },
             wanted: 0,
         });
@@ -192,7 +192,7 @@ impl TableModel {
             let (low, high) = a.band.edges();
             let (bins, capacity) = (a.frequency_hz.len(), a.parameters.len());
             let (options, count) = (a.options.as_ptr(), a.options.len());
-            // SAFETY: live slices, but for one that must be refused.
+            // SAFETY: the slices are live, except one array that must be refused.
             let answer = unsafe {
                 (self.table().fit)(
                     low, high, hz, m, bins, signal, signal_len, a.rate_hz, options, count, to,
@@ -222,7 +222,7 @@ impl TableModel {
             ("misaligned `magnitude`", p, hz, crooked),
         ] {
             let (low, high) = a.band.edges();
-            // SAFETY: live slices, but for one that must be refused.
+            // SAFETY: the slices are live, except one array that must be refused.
             answers.add("magnitude", array, unsafe {
                 (self.table().magnitude)(
                     p,
@@ -247,7 +247,7 @@ impl TableModel {
             ("null `parameters`", sets, one, std::ptr::null_mut()),
         ] {
             let len = a.parameters.len();
-            // SAFETY: live slices, but for one that must be refused.
+            // SAFETY: the slices are live, except one array that must be refused.
             answers.add("interpolate", array, unsafe {
                 (self.table().interpolate)(sets, len, weights, 1, to, len)
             });
@@ -274,8 +274,8 @@ impl TableModel {
         for (array, to) in
             [("null `out`", std::ptr::null_mut()), ("misaligned `out`", misaligned(&mut out))]
         {
-            // SAFETY: a pointer that must be refused; the misaligned one has live samples behind
-            // it.
+            // SAFETY: a pointer that must be refused. The misaligned pointer points to live
+            // samples.
             answers.add("voice_render", array, unsafe { (table.voice_render)(voice, to, LEN) });
         }
         (table.voice_free)(voice);

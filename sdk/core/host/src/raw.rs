@@ -12,7 +12,7 @@ use htex_model::{Band, FitInput, Motion};
 use crate::HostError;
 use crate::probe::{ProbeArguments, Unusable};
 
-/// The functions of one model. A returned number is a length or a status, as in `htex_model::abi`.
+/// The functions of one model. As in `htex_model::abi`, a returned number is a length or a status.
 pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
@@ -31,7 +31,7 @@ pub(crate) trait RawModel: Send + Sync {
     fn extension(&self, id: &[u8]) -> i64;
     /// Returns whether the model has the extension `htex.motion/1`.
     fn follows_motion(&self) -> bool;
-    /// For checkers: returns the answers to unusable arrays.
+    /// For checkers: returns the model's answers to calls with unusable arrays.
     fn unusable_arrays(&self, _: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         None
     }
@@ -73,8 +73,8 @@ pub(crate) trait RawVoice: Send {
     fn together(&self) -> Option<Together> {
         None
     }
-    /// Returns the size of the voice's separate memory, bytes, or `None` if the voice runs in no
-    /// sandbox.
+    /// Returns the size of the voice's separate memory, bytes. Returns `None` if the voice does not
+    /// run in a sandbox.
     fn memory_bytes(&self) -> Option<usize> {
         None
     }
@@ -91,7 +91,7 @@ pub(crate) struct Together {
 
 /// Checks that a model has this ABI's major version.
 pub(crate) fn check_marker(origin: &str, marker: u32) -> Result<(), HostError> {
-    // The lowest byte is the minor version, which increases only for optional exports.
+    // The lowest byte is the minor version, which changes only when optional exports are added.
     if marker >> 8 == ABI_MARKER >> 8 {
         return Ok(());
     }

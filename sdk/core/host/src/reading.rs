@@ -11,31 +11,32 @@ use crate::{Band, HostError, LoadedModel};
 
 /// Number of points per bin at which a magnitude is sampled.
 const IN_BIN: i32 = 8;
-/// Distance to which a voice plays beyond the edges of its band, in bins: half of the edge bin.
+/// A voice plays up to this distance beyond the edges of its band, in bins: half of the edge bin.
 const BESIDE_EDGE_BINS: f64 = 0.5;
-/// Fraction of a source's own rate up to which the resampler passes frequencies unchanged.
+/// The resampler passes frequencies unchanged up to this fraction of a source's own rate.
 const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
     /// Returns whether the model's magnitudes describe spectral lines instead of a spectral
-    /// density. The magnitude of a spectral line is the value that one measures with a window
-    /// function. Sums of sinusoids have lines. Models that follow the motion also have lines: their
-    /// samples repeat, because a finger crosses the same surface again and again.
+    /// density. The magnitude of a spectral line is the value that a measurement with a window
+    /// function gives. Sums of sinusoids have lines. Models that follow the motion also have lines:
+    /// their samples repeat, because a finger crosses the same surface again and again.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
 
-    /// Returns the magnitude that one would measure in a recording of the voice with a Hann window
-    /// of 0.2 s, on the band's grid and with unit RMS. A bin next to a steep flank measures part of
-    /// the flank. A bin at an edge of the band measures frequencies up to half a bin beyond the
-    /// edge. If the model has its own sample rate, the result includes the effect of resampling to
-    /// a high rate. The RMS of the result is then [`Self::played_part`] instead of 1.
+    /// Returns the magnitude that a measurement of the voice's samples with a Hann window of 0.2 s
+    /// would give. The magnitude is on the band's grid and has unit RMS. A bin next to a steep
+    /// flank measures part of the flank. A bin at an edge of the band measures frequencies up to
+    /// half a bin beyond the edge. If the model has its own sample rate, the result includes the
+    /// effect of resampling to a high rate. The RMS of the result is then [`Self::played_part`]
+    /// instead of 1.
     ///
     /// A voice plays its model's magnitude as a density. If the model's parameters determine the
     /// level ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
     /// [sharpened](sharpen). For models with spectral lines ([`Self::has_lines`]), this function
-    /// returns the model's magnitude. For a sum of sinusoids, this is the magnitude that one
-    /// measures within the main lobe of the window function.
+    /// returns the model's magnitude. For a sum of sinusoids, this is the magnitude that the main
+    /// lobe of the window function measures.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].
@@ -66,10 +67,10 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns the fraction of a voice's level that remains after resampling to the player's rate,
-    /// measured in the bins of the band. The fraction is 1, except for models with their own sample
-    /// rate. For these models, resampling removes power near half of the model's rate. If all of
-    /// the power lies there, the fraction is about 0.7.
+    /// Returns the fraction of a voice's level that remains after resampling to the player's rate.
+    /// The level is measured in the bins of the band. The fraction is 1, except for models with
+    /// their own sample rate. For these models, resampling removes power near half of the model's
+    /// rate. If all of the power lies there, the fraction is about 0.7.
     ///
     /// # Errors
     /// Returns the errors of [`Self::magnitude`].
@@ -81,8 +82,8 @@ impl LoadedModel {
         Ok(if part > 0.0 { part } else { 1.0 })
     }
 
-    /// Returns the part that the rate conversion passes, for a voice with its own rate whose band
-    /// reaches up to half that rate.
+    /// Returns which amplitude the rate conversion passes, for a voice that has its own rate and
+    /// whose band extends to half of that rate.
     fn own_rate(&self, parameters: &[f64], band: Band) -> Result<Option<OwnRate>, HostError> {
         let rate_hz = self.voice_rate_hz(parameters, band, HIGH_RATE_HZ)?;
         Ok(OwnRate::new(rate_hz, band.high_hz))
@@ -124,15 +125,15 @@ impl LoadedModel {
     }
 }
 
-/// Returns the frequency in the band whose magnitude a voice plays at `hz`. If `hz` is up to half a
-/// bin beyond an edge, this is the edge.
+/// At `hz`, a voice plays the magnitude that the curve has at the returned frequency. If `hz` is up
+/// to half a bin beyond an edge of the band, this frequency is the edge.
 fn played_at(band: Band, hz: f64) -> f64 {
     let edge_hz = hz.clamp(band.low_hz, band.high_hz);
     if (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ { edge_hz } else { hz.max(0.0) }
 }
 
-/// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz.
-/// It is linear between bins and 0 outside the band.
+/// Sharpens a magnitude that is given on the band's grid, and returns its density at the
+/// frequencies `hertz`. The density is linear between bins and 0 outside the band.
 fn sharpened(magnitude: &[f64], band: Band, hertz: &[f64]) -> Vec<f64> {
     let power: Vec<f64> = magnitude.iter().map(|m| m * m).collect();
     let (mut before, mut sharp) = (power.clone(), power.clone());

@@ -13,8 +13,8 @@ use crate::{builtin, own};
 
 /// Models by id. If several models have the same id, these rules decide which one is used:
 ///
-/// - A model takes precedence over all others if the user named its file, or if the program added
-///   the model. Among several such models, the one that was added first takes precedence.
+/// - If the user named a model's file, or the program added the model, it takes precedence over all
+///   other models. Among several such models, the one that was added first takes precedence.
 /// - Of the installed models and the built-in model, the registry considers only the newest of each
 ///   major version. The place in which a version was found does not matter. Among equal versions,
 ///   the first one in the order of [`Search`] is used. Between different major versions, the order
@@ -37,8 +37,8 @@ pub struct Registry {
     models: Vec<LoadedModel>,
     /// The rank of each model in `models`. The ranks are sorted in ascending order.
     ranks: Vec<Rank>,
-    /// Models with the same id as one of `models`. Models with the same id are in order of
-    /// precedence.
+    /// Models whose id also occurs in `models`. Among models with the same id, the order is the
+    /// order of precedence.
     shadowed: Vec<Candidate>,
     notes: Vec<Note>,
     sandbox: Sandbox,
@@ -63,8 +63,8 @@ pub(crate) enum Rank {
 }
 
 impl Rank {
-    /// Returns whether the user or a program named this model itself, instead of a folder that
-    /// contains it.
+    /// Returns whether the user or a program chose this very model, and did not only name a folder
+    /// that contains it.
     fn is_chosen(self) -> bool {
         matches!(self, Self::File | Self::Embedded)
     }
@@ -117,8 +117,8 @@ impl Registry {
         models.map(LoadedModel::short_name).collect()
     }
 
-    /// Returns the short names of the built-in models whose sound does not depend on the finger's
-    /// position: all except models that follow the motion.
+    /// Returns the short names of all built-in models except those that follow the motion. The
+    /// sound of these models does not depend on the finger's position.
     pub fn placeless_names() -> Vec<&'static str> {
         let models = builtin::models().iter();
         let placeless = models.filter(|model| !model.follows_motion());
@@ -145,8 +145,7 @@ impl Registry {
     }
 
     /// Returns a registry for one asset. The modules that a program adds to the new registry share
-    /// the limits [`WasmLimits::asset`]. They also count towards the total of the registry from
-    /// which the new registry was made.
+    /// the limits [`WasmLimits::asset`]. They also count towards the total limits of this registry.
     #[must_use]
     pub fn of_asset(self) -> Self {
         Self { sandbox: self.sandbox.of_asset(), ..self }
@@ -247,10 +246,9 @@ impl Registry {
         self.add_described(origin, RuntimeModelAdapter::new(descriptor, model)?)
     }
 
-    /// Adds the WASM model of a container, such as an asset; `name` is the container's name.
-    /// Plugins that the user named by their files, and models that the program added, take
-    /// precedence over this model. This model takes precedence over all other models. This function
-    /// refuses native libraries.
+    /// Adds the WASM model of a container, such as an asset; `name` is the container's name. Only
+    /// plugins whose files the user named, and models that the program added, take precedence over
+    /// this model. This function refuses native libraries.
     ///
     /// # Errors
     /// Returns an error if the bytes are not a module, or if its model violates the ABI.
@@ -297,8 +295,8 @@ impl Registry {
         let old = Candidate { rank: self.ranks.remove(used), model: self.models.remove(used) };
         let (mut same, others): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.shadowed).into_iter().partition(|one| one.model.id() == id);
-        // The model in use had the highest precedence, and `by_precedence` keeps the order of
-        // chosen models.
+        // The old model is put first, because it had the highest precedence, and `by_precedence`
+        // keeps the order of chosen models.
         same.insert(0, old.clone());
         same.push(new.clone());
         by_precedence(&mut same);
@@ -359,8 +357,8 @@ impl Registry {
         &self.models
     }
 
-    /// Returns the models that a program fits if the user names no model: all except models whose
-    /// descriptor sets [`only_named`](Descriptor::only_named).
+    /// Returns the models that a program fits if the user names no model. These are all models
+    /// except those whose descriptor sets [`only_named`](Descriptor::only_named).
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
         self.models.iter().filter(|model| !model.descriptor().only_named)
     }

@@ -16,8 +16,8 @@ use crate::{HostError, MOTION_EXTENSION};
 /// A model that is a Rust object instead of a type. Implement this trait if the model is not known
 /// at compile time.
 ///
-/// Units and arguments are the same as in [`htex_model::Model`], and the host checks arguments
-/// before each call in the same way. Panics become errors.
+/// Units and arguments are the same as in [`htex_model::Model`]. The host checks the arguments
+/// before each call, as it does for such a model. Panics become errors.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -150,7 +150,7 @@ impl RuntimeModelAdapter {
     /// Creates the model.
     ///
     /// # Errors
-    /// When the descriptor contains a number that JSON cannot represent.
+    /// Returns an error if the descriptor contains a number that JSON cannot represent.
     pub(crate) fn new(
         descriptor: Descriptor,
         model: Arc<dyn RuntimeModel>,
@@ -233,7 +233,7 @@ impl RawModel for RuntimeModelAdapter {
     }
 
     fn extension(&self, id: &[u8]) -> i64 {
-        // `htex.voices/1` is absent: its call needs a table of C functions.
+        // `htex.voices/1` is not supported, because its call needs a table of C functions.
         i64::from(self.follows_motion() && id == MOTION_EXTENSION.as_bytes())
     }
 

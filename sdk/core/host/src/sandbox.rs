@@ -12,7 +12,7 @@ use std::time::Duration;
 use crate::clock::Instant;
 use crate::{WasmLimits, WasmTotal};
 
-/// Fraction of the elapsed time by which the time left in a budget grows.
+/// The time left in a budget grows by this fraction of the elapsed time.
 const REFILL: f64 = 0.1;
 
 /// The limits of modules and the budget that they share. A clone shares the budget.
@@ -57,7 +57,7 @@ pub(crate) enum BudgetError {
 /// The shared limits of several modules and their current use.
 #[derive(Debug)]
 pub(crate) struct Budget {
-    /// Name, in messages, of the modules that share the budget.
+    /// What messages call the modules that share the budget.
     owner: &'static str,
     total: WasmTotal,
     memory_bytes: AtomicUsize,
@@ -114,8 +114,8 @@ impl Budget {
         }
     }
 
-    /// Adds to a count of this budget and of the budgets that contain it. On error, adds nothing
-    /// and returns the budget whose limit would be exceeded.
+    /// Adds to a count of this budget and of the budgets that contain it. If a limit would be
+    /// exceeded, adds nothing and returns the budget with this limit.
     fn reserve(
         &self,
         n: usize,
@@ -126,7 +126,8 @@ impl Budget {
             let add = |used: usize| used.checked_add(n).filter(|sum| *sum <= most);
             // No other data depends on the counts, so `Relaxed` suffices.
             if used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).is_err() {
-                // An outer budget is full, so what the inner ones counted is taken back.
+                // An outer budget is full, so the number is subtracted again from the inner
+                // budgets.
                 for other in self.all().take(taken) {
                     count(other).0.fetch_sub(n, Ordering::Relaxed);
                 }
@@ -141,8 +142,8 @@ impl Budget {
         let mut least = Duration::MAX;
         for budget in self.all() {
             let left = budget.update(Duration::ZERO);
-            // Once the time is used up, calls are refused until a hundredth of the total has been
-            // added again.
+            // After the time is used up, calls are refused until the time left has grown to a
+            // hundredth of the total again.
             if left < budget.total.time / 100 {
                 return Err(BudgetError::Time {
                     owner: budget.owner,
@@ -166,8 +167,8 @@ impl Budget {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
         let back = now.saturating_duration_since(time.at).mul_f64(REFILL);
-        // Limited before the spent time is subtracted, so that a long pause does not pay for a call
-        // that came after it.
+        // The time left is limited before the spent time is subtracted. Otherwise, a long pause
+        // would pay for the call after it.
         time.left = (time.left + back).min(self.total.time).saturating_sub(spent);
         time.at = now;
         time.left

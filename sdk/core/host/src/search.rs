@@ -14,8 +14,9 @@ const FOLDER: &str = "htex/plugins";
 
 /// The places to search for models, in order of precedence: `files`, `modules`, models embedded in
 /// an asset, `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, the folders of all users, built-in
-/// models. From `dirs` on, a newer version takes precedence over an older version with the same
-/// major version, even if the older version is in an earlier place ([`Registry`]).
+/// models. In `dirs` and all places after it, a newer version takes precedence over an older
+/// version with the same major version, even if the older version is in an earlier place
+/// ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};
@@ -34,8 +35,8 @@ pub struct Search {
     /// a native library runs with all the rights of its user. A user who wants a native library
     /// must name it in `files`, which takes precedence over `modules`.
     pub modules: Vec<PathBuf>,
-    /// Plugin folders. A folder that cannot be read is an error. A plugin that cannot be loaded
-    /// from a folder is not an error, but gives a [`Note`].
+    /// Plugin folders. A folder that cannot be read is an error. If a plugin in a folder cannot be
+    /// loaded, this is not an error, but the registry gets a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
@@ -120,7 +121,7 @@ impl Search {
                 self.add_folder(&mut registry, Rank::Folder, &dir);
             }
         }
-        // A browser has no environment, so nothing is asked of it unless folders are searched.
+        // A browser has no environment variables, so these are read only if folders are searched.
         if self.user_dir {
             if let Some(dir) = data(FOLDER) {
                 self.add_folder(&mut registry, Rank::User, &dir);
@@ -146,8 +147,8 @@ impl Search {
         }
     }
 
-    /// Loads a plugin of a folder. Returns `None` if it is a native library that must not be loaded
-    /// and carries no descriptor.
+    /// Loads a plugin of a folder. Returns `None` for a native library that must not be loaded and
+    /// does not contain a descriptor.
     fn load(&self, path: &Path, registry: &Registry) -> Result<Option<LoadedModel>, HostError> {
         #[cfg(feature = "descriptions")]
         if self.only_descriptors {

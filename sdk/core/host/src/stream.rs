@@ -6,7 +6,7 @@ use htex_dsp::resample::Resampler;
 use crate::{HostError, LoadedModel, ModelVoice};
 
 /// A stream of samples at a requested rate. A stream contains a source of samples, such as a voice.
-/// If the source has another rate than the stream, the stream also contains a resampler.
+/// If the rates of the source and the stream differ, the stream also contains a resampler.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -68,7 +68,7 @@ impl<S> Stream<S> {
         };
         let mut result = Ok(());
         resampler.process(out, &mut |block| {
-            // The resampler cannot stop halfway, so an error is returned at the end.
+            // The resampler cannot stop halfway, so an error is returned only at the end.
             if let Err(error) = render(&mut self.source, block) {
                 result = Err(error);
             }
@@ -104,7 +104,7 @@ impl Stream {
     /// Fills `out` with the next samples. Does not allocate.
     ///
     /// # Errors
-    /// When the model fails. Samples that the model did not render are zero.
+    /// When the model fails. After an error, the samples that the model did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         self.render_by(out, ModelVoice::render)
     }

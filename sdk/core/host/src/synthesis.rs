@@ -23,10 +23,11 @@ const LOOP_RANGE_S: (f64, f64) = (0.1, 60.0);
 const TAPS_RANGE: (usize, usize) = (15, 4095);
 /// Maximum number of samples in a loop (256 MiB).
 const MOST_SAMPLES: f64 = 6.7e7;
-/// Duration of a loop's cross-fade, seconds, but never more than a quarter of the loop.
+/// Duration of a loop's cross-fade, seconds. In a short loop, the cross-fade takes a quarter of the
+/// loop instead.
 const FADE_S: f64 = 0.1;
-/// Duration of the first samples of a voice and its resampler, seconds. A loop leaves these samples
-/// out.
+/// A loop leaves out the first samples of a voice and its resampler. This is their duration,
+/// seconds.
 const RUN_IN_S: f64 = 0.1;
 
 /// A method of synthesis. Its text form is `streamed`, `loop:SECONDS` or `filter:TAPS`. The number
@@ -54,10 +55,10 @@ pub enum Synthesis {
         seconds: f64,
     },
     /// White noise through a linear-phase filter with the model's magnitude. The filter has 15 to
-    /// 4095 taps. The noise and the filter run at a lower sample rate: the output's sample rate
-    /// divided by an integer, as low as the band allows. The noise of most models also runs at this
-    /// lower rate. The filter's frequency resolution is four times this lower rate, divided by the
-    /// number of taps. The spectrum does not change with time.
+    /// 4095 taps. The noise and the filter run at a lower sample rate than the output, as the noise
+    /// of most models does. This rate is the output's sample rate divided by an integer, and is as
+    /// low as the band allows. The filter's frequency resolution is four times this lower rate,
+    /// divided by the number of taps. The spectrum does not change with time.
     Filter {
         /// Number of coefficients of the filter.
         taps: usize,
@@ -182,8 +183,8 @@ impl StillSound {
 fn looped(mut stream: Stream, seconds: f64, rate_hz: f64) -> Result<Loop, HostError> {
     let fade_s = FADE_S.min(0.25 * seconds);
     let samples = |s: f64| (s * rate_hz).round() as usize;
-    // Before any memory is allocated. The range of the seconds alone does not bound the samples,
-    // because the rate is the caller's.
+    // Before any memory is allocated. Limiting the seconds does not limit the number of samples,
+    // because the caller chooses the rate.
     if (seconds + fade_s) * rate_hz > MOST_SAMPLES {
         let text = format!("loop:{seconds} at {rate_hz} Hz");
         return Err(HostError::Synthesis { text });
@@ -213,8 +214,8 @@ impl FilteredNoise {
         magnitude: impl Fn(&[f64]) -> Result<Vec<f64>, HostError>,
     ) -> Result<Self, HostError> {
         let noise_hz = economical_rate_hz(rate_hz, band);
-        // The filter reads the curve one frequency at a time, so the model is called once for all
-        // of them.
+        // The filter reads the curve one frequency at a time. Therefore, the model is called only
+        // once here, for all frequencies.
         let grid: Vec<f64> = (0..=(0.5 * noise_hz) as usize).map(|f| f as f64).collect();
         let curve = magnitude(&grid)?;
         let at = |hz: f64| {

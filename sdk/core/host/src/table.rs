@@ -34,7 +34,7 @@ impl TableModel {
 }
 
 // Each call below passes slices that are readable or writable for their whole length during the
-// call, as the ABI requires. Only its `TableVoice` holds a voice's handle.
+// call, as the ABI requires. Only a voice's `TableVoice` has the voice's handle.
 impl RawModel for TableModel {
     fn abi_version(&self) -> u32 {
         (self.table.abi_version)()
@@ -54,7 +54,8 @@ impl RawModel for TableModel {
         let bins = input.frequency_hz.len().min(input.magnitude.len());
         if let Some(motion) = self.motion {
             let (speed_mm_s, force_n) = input.condition.numbers();
-            // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
+            // SAFETY: the slices are live. For the two slices of the spectrum, the shorter length
+            // is used.
             return unsafe {
                 (motion.fit)(
                     input.band.low_hz,
@@ -75,7 +76,8 @@ impl RawModel for TableModel {
                 )
             };
         }
-        // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
+        // SAFETY: the slices are live. For the two slices of the spectrum, the shorter length is
+        // used.
         unsafe {
             (self.table.fit)(
                 input.band.low_hz,
@@ -102,7 +104,7 @@ impl RawModel for TableModel {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> i64 {
-        // SAFETY: live slices; the shorter of the two lengths is used for both.
+        // SAFETY: the slices are live. For both slices, the shorter length is used.
         unsafe {
             (self.table.magnitude)(
                 parameters.as_ptr(),
@@ -170,7 +172,7 @@ impl RawModel for TableModel {
     }
 }
 
-/// A voice and its handle. No other value contains this handle.
+/// A voice and its handle. No other value contains the handle.
 struct TableVoice {
     model: TableModel,
     handle: i64,
@@ -251,7 +253,8 @@ mod tests {
     use super::*;
     use crate::{LoadedModel, Origin};
 
-    /// A model whose samples are positions and whose parameter is the recording's speed.
+    /// A model for tests. Its samples are positions, and its parameter is the speed of the
+    /// recording.
     struct Ruler;
     struct Finger(f32);
 

@@ -1,7 +1,7 @@
 //! Renders several voices in as few calls as their models allow.
 //!
 //! Adjacent voices of the same model form a group, which one call renders. If a model has no
-//! function that renders several voices, each of its voices is rendered by a separate call.
+//! function that renders several voices, a separate call renders each of its voices.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
@@ -11,12 +11,11 @@ use crate::{HostError, ModelVoice};
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
 /// Fills `out` with the next `frames` samples of each voice, one voice after another. The samples
-/// are bit-identical to the samples that separate calls of [`ModelVoice::render`] give. Adjacent
-/// voices of the same model are rendered in one call if the model has the extension
-/// `htex.voices/1`, as the built-in models do. The voices of a model without the extension are
-/// rendered in separate calls. If `out` is too short, the remaining voices do not advance; if `out`
-/// is too long, its rest is filled with zeros. Does not allocate, lock or block if the models
-/// follow the ABI.
+/// are bit-identical to those of separate calls of [`ModelVoice::render`]. Adjacent voices of the
+/// same model are rendered in one call if the model has the extension `htex.voices/1`, as the
+/// built-in models do. The voices of a model without the extension are rendered in separate calls.
+/// If `out` is too short, the remaining voices do not advance; if `out` is too long, its rest is
+/// filled with zeros. Does not allocate, lock or block if the models follow the ABI.
 ///
 /// For the model AR in blocks of 256 frames, rendering in one call reduces the time to about six
 /// tenths (`cargo xtask bench`). For fewer than 64 frames, AR saves no time.
@@ -49,8 +48,8 @@ pub fn render_together<'a>(
             break;
         }
         rows -= 1;
-        // This voice belongs to another model, or the call is full: render the collected ones
-        // first.
+        // If this voice belongs to another model, or the call is full, the collected voices are
+        // rendered first.
         if !run.takes(voice) {
             result = result.and(run.render(frames, &mut rest));
         }
@@ -118,8 +117,9 @@ fn call(
     let (Some(render), Some(Some(first))) = (render, voices.first()) else {
         return Ok(());
     };
-    // SAFETY: live slices, with one row of `out` per handle. Only its voice holds a handle, and the
-    // references to the voices are exclusive, so no other thread uses it.
+    // SAFETY: the slices are live, with one row of `out` per handle. Only the voice itself has its
+    // handle, and the references to the voices are exclusive. Therefore, no other thread uses a
+    // handle.
     let status = unsafe { render(handles.as_ptr(), count, out.as_mut_ptr(), frames) };
     first.done("htex_voices_1_render", status).inspect_err(|_| out.fill(0.0))?;
     let mut result = Ok(());

@@ -1,8 +1,8 @@
 //! A voice of a model.
 //!
 //! This module checks the samples of all models for NaN and infinity, so the loaders need no such
-//! check. Because no NaN passes the check, the WASM compiler need not canonicalise NaNs in every
-//! operation.
+//! check. No NaN passes this check. Therefore, the WASM compiler need not canonicalise NaNs in
+//! every operation.
 //!
 //! Each voice itself interpolates the parameters between conditions, in buffers that were allocated
 //! with the voice. The voice of a WASM module interpolates in the voice's own instance. Therefore a
@@ -65,18 +65,18 @@ impl ModelVoice {
         self.raw.together()
     }
 
-    /// Checks that all samples are finite, because a NaN would stay in the state of every following
-    /// filter.
+    /// Checks that all samples are finite. A NaN would stay in the state of every filter that
+    /// processes the samples later.
     pub(crate) fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
-        // No early return, so that the compiler vectorises the loop.
+        // The loop has no early return, so that the compiler vectorises it.
         if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Ok(());
         }
         Err(self.not_finite(out))
     }
 
-    /// Makes the error. It is a separate function so that the check, which every block passes,
-    /// stays small.
+    /// Makes the error. This is a separate function, so that the code of the check, which runs for
+    /// every block, stays small.
     #[cold]
     fn not_finite(&self, out: &[f32]) -> HostError {
         let first = out.iter().position(|x| !x.is_finite()).unwrap_or_default();
@@ -93,8 +93,8 @@ impl ModelVoice {
         self.done("voice_retune", status)
     }
 
-    /// Switches to parameters interpolated between several sets. `sets` contains these parameter
-    /// sets, concatenated. `buffer` receives the interpolated set, which has at most
+    /// Switches to parameters interpolated between several sets. `sets` contains the concatenated
+    /// parameter sets. `buffer` receives the interpolated set, which has at most
     /// [`LoadedModel::most_parameters`] numbers. The voice interpolates in its own instance,
     /// without a lock, and without allocation if the model follows the ABI.
     ///
@@ -154,7 +154,8 @@ impl ModelVoice {
     /// refuses a freed handle. Apps free a voice by dropping it.
     ///
     /// # Errors
-    /// Returns the model's error. A second call must return the error for an unknown handle.
+    /// Returns the model's error. On a second call, the model must return the error for an unknown
+    /// handle.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
         let status = self.raw.free();
         self.done("voice_free", status)

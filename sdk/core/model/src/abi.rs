@@ -11,7 +11,7 @@
 //! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). A WASM module imports
 //! nothing.
 
-/// Major version. A host loads only models whose major version of the ABI equals the host's.
+/// Major version. A host loads a model only if both use the same major version of the ABI.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor version. Every new optional export increases the minor version.
 pub const ABI_MINOR: u32 = 0;
@@ -95,7 +95,7 @@ pub type VoiceRateFn = unsafe extern "C" fn(
     band_high_hz: f64,
     wanted_hz: f64,
 ) -> f64;
-/// Makes a voice; returns its handle, which is above zero, or a negative status. `[any thread]`
+/// Makes a voice. Returns its handle, which is above zero, or a negative status. `[any thread]`
 pub type VoiceNewFn = unsafe extern "C" fn(
     parameters: *const f64,
     parameters_len: usize,

@@ -1,5 +1,5 @@
-//! The memory allocator of a WASM module: blocks in size classes, each with a list of freed blocks.
-//! This allocator has a tenth of the code of a general allocator.
+//! The memory allocator of a WASM module. Blocks belong to size classes, and each class has a list
+//! of its freed blocks. This allocator has a tenth of the code of a general allocator.
 //!
 //! There are four size classes for each doubling of the size, so a block is at most a quarter
 //! larger than requested, apart from rounding up to a multiple of 16 bytes. A freed block is reused
@@ -11,8 +11,8 @@ use core::ptr::null_mut;
 
 /// Size of a page, bytes: WASM memory grows by whole pages.
 pub(crate) const PAGE_BYTES: usize = 65_536;
-/// Size of the smallest block and alignment of all blocks, bytes: enough for every number and
-/// vector.
+/// Size of the smallest block, and alignment of all blocks, bytes. The alignment is enough for
+/// every number and vector.
 const ALIGN: usize = 16;
 /// Size classes per octave.
 const STEPS: usize = 4;
@@ -49,7 +49,8 @@ impl Arena {
         if block.is_null() {
             return self.allocate_fresh(len, grow);
         }
-        // SAFETY: a freed block, to which `give_back` wrote the address of the one freed before it.
+        // SAFETY: this is a freed block. `give_back` wrote to it the address of the block that was
+        // freed before it.
         self.freed[class] = unsafe { block.cast::<*mut u8>().read() };
         Some(block)
     }
@@ -60,10 +61,12 @@ impl Arena {
         grow: impl FnOnce(usize) -> Option<*mut u8>,
     ) -> Option<*mut u8> {
         if len > self.fresh_len {
-            // Enough for the whole block, because new pages need not follow the old ones.
+            // There are enough pages for the whole block, because new pages may not directly follow
+            // the old pages.
             let pages = len.div_ceil(PAGE_BYTES);
             let new = grow(pages)?;
-            // New pages extend the old ones if they follow them; else the rest of these is lost.
+            // If the new pages directly follow the old pages, they extend them. Otherwise the rest
+            // of the old pages is lost.
             if new != self.fresh.wrapping_add(self.fresh_len) {
                 (self.fresh, self.fresh_len) = (new, 0);
             }
@@ -97,7 +100,8 @@ fn class(size: usize) -> Option<(usize, usize)> {
     let step = (1 << octave) / STEPS;
     let steps = size.div_ceil(step);
     let len = steps.checked_mul(step)?.checked_next_multiple_of(ALIGN)?;
-    // If rounding up reaches the next octave, this is already the first class of that octave.
+    // If rounding up gives a size of the next octave, this number is the first class of that
+    // octave.
     Some((STEPS * octave + steps - STEPS, len))
 }
 
@@ -106,8 +110,8 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Blocks of all sizes, allocated and freed in mixed order, never overlap, keep their content,
-    /// are aligned, and are reused.
+    /// The test allocates and frees blocks of all sizes in mixed order. The blocks never overlap,
+    /// keep their content, are aligned, and are reused.
     #[test]
     fn blocks_are_apart_and_used_again() {
         const PAGES: usize = 512;

@@ -1,5 +1,5 @@
-//! Checks of the arguments and results of models. The exported C functions make these checks, and
-//! so does a host that calls a model directly, without C functions.
+//! Checks of the arguments and results of models. The exported C functions make these checks. A
+//! host makes the same checks if it calls a model directly, without C functions.
 
 use alloc::vec::Vec;
 
@@ -123,7 +123,7 @@ fn check_options(values: &[f64], descriptor: &dyn Fields) -> Result<(), Error> {
     }
     for (i, &value) in values.iter().enumerate() {
         let (option, integer) = descriptor.option(i);
-        // Without `std` there is no `fract`.
+        // Without `std`, `fract` does not exist.
         let whole = !integer || value as i64 as f64 == value;
         if !(option.min..=option.max).contains(&value) || !whole {
             let kind = if integer { "whole numbers " } else { "" };
@@ -172,13 +172,14 @@ pub fn interpolate(
     parameters: &mut [f64],
 ) -> Result<i64, Error> {
     check_weights(weights)?;
-    // Hosts interpolate two or three sets, and may do so on the render thread: no allocation for
-    // these.
+    // Hosts interpolate two or three sets, and may do this on the render thread. Therefore, few
+    // sets need no allocation.
     let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
     let sets = match few.get_mut(..weights.len()) {
         Some(few) => few,
         None => {
-            // Each set has at least one number, so the caller's own array bounds the memory.
+            // Each set has at least one number, so the length of the caller's array limits the
+            // memory.
             many.resize(weights.len().min(flat.len()), Values::NONE);
             &mut many[..]
         }
@@ -186,7 +187,8 @@ pub fn interpolate(
     read_sets(descriptor, flat, sets)?;
     let mut mixed = Numbers::new(parameters);
     own(sets, weights, &mut mixed)?;
-    // If the buffer was too small, the caller calls again, and the complete result is checked then.
+    // If the buffer was too small, the caller calls again, and the complete result is checked in
+    // that call.
     if mixed.count() == mixed.written().len() {
         Values::read(descriptor, mixed.written())?;
     }

@@ -1,6 +1,6 @@
 //! Replacements for the parts of the standard library that this crate needs. They are for targets
-//! that have no standard library and are not WASM, such as microcontrollers. On these targets,
-//! programs call models only through the Rust traits.
+//! without a standard library other than WASM, such as microcontrollers. On these targets, programs
+//! call models only through the Rust traits.
 
 use core::cell::RefMut;
 use core::marker::PhantomData;
@@ -28,7 +28,8 @@ impl<T> Lock<T> {
     }
 }
 
-/// Expands to nothing: without an operating system, no host calls a model through C functions.
+/// This macro generates nothing, because without an operating system no host calls a model through
+/// C functions.
 #[macro_export]
 macro_rules! export_model {
     ($model:ty, symbols: $feature:literal $(, extensions: [motion])?) => {};

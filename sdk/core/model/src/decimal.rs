@@ -1,11 +1,11 @@
 //! Writes numbers as decimal texts. The text formatting of the standard library would add 20 kB to
-//! a WASM module. `exact.rs` needs code that runs at compile time, and packages such as `ryu`
-//! cannot do that.
+//! a WASM module. Packages such as `ryu` cannot run at compile time, but `exact.rs` needs such
+//! code.
 
 /// Significant digits of the result of [`rounded`].
 const DIGITS: i32 = 9;
-/// Smallest and largest position of the decimal point, counted from the first digit, at which a
-/// number is written without an exponent.
+/// A number is written without an exponent if the position of its decimal point is in this range.
+/// The position is counted from the first digit.
 const PLAIN: (i32, i32) = (-6, 17);
 
 /// `digits · 10^exponent`.
@@ -18,7 +18,7 @@ pub(crate) struct Decimal {
 
 /// A short ASCII text.
 pub(crate) struct Short {
-    // Enough for a sign, `0.`, six zeros and 20 digits.
+    // The size is enough for a sign, `0.`, six zeros and 20 digits.
     bytes: [u8; 40],
     len: usize,
 }
@@ -44,7 +44,7 @@ impl Short {
     }
 
     /// Writes the digits of a number. If there are more than `whole` digits, a decimal point
-    /// follows the first `whole` ones.
+    /// follows the first `whole` digits.
     const fn digits(&mut self, number: u64, whole: i32) {
         let mut unit = 1;
         while number / unit >= 10 {

@@ -38,7 +38,7 @@ pub struct Descriptor {
     pub version: String,
     /// One sentence that says which properties of a spectrum the model stores.
     pub summary: String,
-    /// Parameter fields, in the order in which the flat parameter array contains them.
+    /// Parameter fields, in their order in the flat parameter array.
     #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = 32)))]
     pub fields: Vec<Field>,
     /// Fit options, in the order in which a fit receives their values.
@@ -92,8 +92,8 @@ pub struct Field {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value of the field in an asset from an earlier minor version of the model that did not have
-    /// the field. Only for scalars.
+    /// Default value of the field. It is used for an asset that was written by an earlier minor
+    /// version of the model, without this field. Only for scalars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
@@ -103,8 +103,8 @@ pub struct Field {
     pub description: String,
 }
 
-/// One option of the fit. The value of the option is a number or, for an option with named choices,
-/// the index of a choice.
+/// One option of the fit. The value of the option is a number. If the option has named choices,
+/// this number is the index of a choice.
 ///
 /// ```
 /// use htex_model::FitOption;
@@ -148,7 +148,7 @@ pub struct FitOption {
     /// Names of the values 0, 1, …; empty if the option is a plain number.
     #[serde(default)]
     pub choices: Vec<String>,
-    /// Values of this option that a sweep of accuracy against cost (`htex tradeoff`) tries. The
+    /// A sweep of accuracy against cost (`htex tradeoff`) tries these values of the option. The
     /// sweep tries all combinations of the `sweep` values of all options. For named choices, the
     /// values are their indices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -192,8 +192,8 @@ impl Descriptor {
         self.options.iter().map(|o| o.default).collect()
     }
 
-    /// Whether the parameters are sinusoids, i.e. whether the fields begin with exactly two lists,
-    /// `frequency_hz` and `amplitude`.
+    /// Returns whether the parameters are sinusoids, i.e. whether the fields begin with exactly two
+    /// lists, `frequency_hz` and `amplitude`.
     pub fn is_sum_of_sines(&self) -> bool {
         let is_list = |field: &&Field| matches!(field.kind, Kind::List { .. });
         let lists = self.fields.iter().take_while(is_list);

@@ -1,8 +1,9 @@
-//! Writes numbers, at compile time, as decimal texts that parse to exactly the same bits.
+//! Writes numbers as decimal texts at compile time. Parsing such a text gives exactly the same
+//! bits.
 //!
-//! The project has its own code for these texts because no formatter of the standard library or of
-//! a package runs at compile time. Because the compiler computes the texts, a WASM module contains
-//! the text of its descriptor, but no code that writes such texts.
+//! The project has its own code for these texts, because no formatter of the standard library or of
+//! a package runs at compile time. The compiler computes the texts. Therefore, a WASM module
+//! contains the text of its descriptor, but no code that writes such texts.
 
 use crate::decimal::Decimal;
 
@@ -10,15 +11,15 @@ use crate::decimal::Decimal;
 const EXACT_POWER: i32 = 22;
 /// Whole numbers below this one are exact in 64-bit floats.
 const EXACT_WHOLE: f64 = (1u64 << 53) as f64;
-/// Number of digits that distinguishes all 64-bit floats.
+/// Number of digits that is enough to distinguish all 64-bit floats.
 const ENOUGH_DIGITS: usize = 17;
-/// Number of limbs, of nine digits each, that hold `m · 5^1074` for m < 2^53.
+/// Number of limbs that are needed for `m · 5^1074` with m < 2^53. A limb has nine digits.
 const LIMBS: usize = 86;
 const LIMB: u64 = 1_000_000_000;
 
-/// Returns a decimal that parses to the given finite number. It is the shortest such decimal if a
-/// single product or quotient of exact floats yields the number (Clinger 1990); otherwise it has 17
-/// digits.
+/// Returns a decimal that parses to the given finite number. If a single product or quotient of
+/// exact floats gives the number (Clinger 1990), the decimal is the shortest possible one.
+/// Otherwise it has 17 digits.
 pub(crate) const fn exact(number: f64) -> Decimal {
     assert!(number.is_finite(), "a descriptor contains a number that is not finite");
     let negative = number < 0.0;
@@ -34,13 +35,14 @@ const fn short(size: f64) -> Option<(u64, i32)> {
     if size == 0.0 {
         return Some((0, 0));
     }
-    // From the largest exponent down, so that the first match has the fewest digits.
+    // The search goes down from the largest exponent, so that the first match has the fewest
+    // digits.
     let mut exponent = EXACT_POWER;
     while exponent >= -EXACT_POWER {
         let power = power_of_ten(exponent.abs());
         let digits = if exponent >= 0 { size / power } else { size * power };
-        // A whole number and a power of ten that are both exact are rounded only once, by the
-        // product or quotient. A reader of the text rounds in the same way.
+        // If the whole number and the power of ten are both exact, only their product or quotient
+        // is rounded. A reader of the text rounds in the same way.
         if digits < EXACT_WHOLE {
             let whole = (digits + 0.5) as u64;
             let back = if exponent >= 0 { whole as f64 * power } else { whole as f64 / power };
@@ -62,7 +64,8 @@ const fn power_of_ten(exponent: i32) -> f64 {
     power
 }
 
-/// Returns the first 17 digits of the number's full decimal expansion, rounded half up.
+/// Computes the full decimal expansion of the number, and returns its first 17 digits, rounded half
+/// up.
 const fn long(size: f64) -> (u64, i32) {
     let bits = size.to_bits();
     let (field, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
@@ -70,7 +73,7 @@ const fn long(size: f64) -> (u64, i32) {
         0 => (fraction, -1074),
         _ => (fraction | 1 << 52, field - 1075),
     };
-    // m · 2^-n is m · 5^n · 10^-n.
+    // Note that m · 2^-n = m · 5^n · 10^-n.
     let factor = if power < 0 { 5 } else { 2 };
     let mut limbs = [0; LIMBS];
     // A mantissa is below 10^18, so it fills at most two limbs.
@@ -119,7 +122,7 @@ mod tests {
     use super::*;
     use std::string::String;
 
-    /// Numbers of all sizes parse to the same bits, and short decimals are reproduced.
+    /// The texts of numbers of all sizes parse to the same bits. Short decimals stay the same.
     #[test]
     fn decimals_read_as_the_number() {
         let text = |x| String::from_utf8(exact(x).text().bytes().to_vec()).unwrap();

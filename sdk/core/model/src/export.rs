@@ -3,9 +3,9 @@
 /// Generates the C functions of a [`Model`](crate::Model), and a table of them, `pub static TABLE`.
 ///
 /// `symbols: "FEATURE"` names a Cargo feature of the calling crate. When this feature is on, the
-/// macro also exports the functions under their C names (`htex_model_…`), which a native library or
-/// a WASM module needs. Such a library or module contains exactly one model. A WASM module also
-/// gets the two memory functions of the ABI.
+/// macro also exports the functions under their C names (`htex_model_…`). A native library or a
+/// WASM module needs these exports. Such a library or module contains exactly one model. A WASM
+/// module also gets the two memory functions of the ABI.
 ///
 /// Add `extensions: [motion]`, as in `export_model!(Stick, symbols: "plugin", extensions:
 /// [motion])`, if the model has the extension `htex.motion/1`. The model's voice then has to
@@ -13,7 +13,7 @@
 ///
 /// The macro also generates `pub static VOICES` and `pub static MOTION`, which contain the
 /// functions of the extensions `htex.voices/1` and `htex.motion/1`. `MOTION` is `None` if the model
-/// does not have that extension.
+/// does not have the extension `htex.motion/1`.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -95,7 +95,7 @@ macro_rules! export_model {
                 out: *mut u8,
                 capacity: usize,
             ) -> i64 {
-                // SAFETY: the caller's buffer, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's buffer is valid.
                 STATE.descriptor(unsafe { Output::new(out, capacity) })
             }
 
@@ -104,7 +104,7 @@ macro_rules! export_model {
                 out: *mut u8,
                 capacity: usize,
             ) -> i64 {
-                // SAFETY: the caller's buffer, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's buffer is valid.
                 shim::last_error(unsafe { Output::new(out, capacity) })
             }
 
@@ -124,7 +124,7 @@ macro_rules! export_model {
                 capacity: usize,
                 level_rms: *mut f64,
             ) -> i64 {
-                // SAFETY: the caller's arrays, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's arrays are valid.
                 STATE.fit(unsafe {
                     FitCall {
                         band: (band_low_hz, band_high_hz),
@@ -149,7 +149,7 @@ macro_rules! export_model {
                 magnitude: *mut f64,
                 bins: usize,
             ) -> i64 {
-                // SAFETY: the caller's arrays, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's arrays are valid.
                 unsafe {
                     STATE.magnitude(
                         Input::new(parameters, parameters_len),
@@ -169,7 +169,7 @@ macro_rules! export_model {
                 parameters: *mut f64,
                 capacity: usize,
             ) -> i64 {
-                // SAFETY: the caller's arrays, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's arrays are valid.
                 unsafe {
                     STATE.interpolate(
                         Input::new(sets, sets_len),
@@ -187,7 +187,7 @@ macro_rules! export_model {
                 band_high_hz: f64,
                 wanted_hz: f64,
             ) -> f64 {
-                // SAFETY: the caller's array, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's array is valid.
                 let parameters = unsafe { Input::new(parameters, parameters_len) };
                 STATE.voice_rate(parameters, (band_low_hz, band_high_hz), wanted_hz)
             }
@@ -201,7 +201,7 @@ macro_rules! export_model {
                 rate_hz: f64,
                 seed: u64,
             ) -> i64 {
-                // SAFETY: the caller's array, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's array is valid.
                 let parameters = unsafe { Input::new(parameters, parameters_len) };
                 STATE.voice_new(parameters, (band_low_hz, band_high_hz), rate_hz, seed)
             }
@@ -212,7 +212,8 @@ macro_rules! export_model {
                 out: *mut f32,
                 frames: usize,
             ) -> i64 {
-                // SAFETY: the caller's buffer, and one thread a voice, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's buffer is valid, and that only one
+                // thread uses the voice.
                 unsafe { STATE.voice_render(voice, Output::new(out, frames)) }
             }
 
@@ -222,7 +223,8 @@ macro_rules! export_model {
                 parameters: *const f64,
                 parameters_len: usize,
             ) -> i64 {
-                // SAFETY: the caller's array, and one thread a voice, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's array is valid, and that only one
+                // thread uses the voice.
                 unsafe { STATE.voice_retune(voice, Input::new(parameters, parameters_len)) }
             }
 
@@ -236,7 +238,7 @@ macro_rules! export_model {
                 id: *const u8,
                 id_len: usize,
             ) -> i64 {
-                // SAFETY: the caller's text, by the ABI.
+                // SAFETY: the ABI guarantees that the caller's text is valid.
                 shim::extension(unsafe { Input::new(id, id_len) }, $motion)
             }
 
@@ -247,7 +249,8 @@ macro_rules! export_model {
                 out: *mut f32,
                 frames: usize,
             ) -> i64 {
-                // SAFETY: the caller's arrays, and one thread a voice, by the extension.
+                // SAFETY: the extension guarantees that the caller's arrays are valid, and that
+                // only one thread uses each voice.
                 unsafe {
                     let out = Output::new(out, count.saturating_mul(frames));
                     STATE.voices_render(Input::new(voices, count), frames, out)
@@ -263,7 +266,8 @@ macro_rules! export_model {
             #[cfg(target_family = "wasm")]
             #[cfg_attr(feature = $feature, unsafe(no_mangle))]
             pub(super) unsafe extern "C" fn htex_model_free(pointer: *mut u8, len: usize) {
-                // SAFETY: a block that `htex_model_alloc` returned for this length, by the ABI.
+                // SAFETY: the ABI guarantees that `htex_model_alloc` returned this block for this
+                // length.
                 unsafe { shim::free(pointer, len) }
             }
         }
@@ -298,7 +302,7 @@ macro_rules! export_model {
                     x_mm,
                     y_mm,
                 };
-                // SAFETY: one thread a voice, by the extension.
+                // SAFETY: the extension guarantees that only one thread uses the voice.
                 unsafe { STATE.motion_set(voice, motion) }
             }
 
@@ -320,7 +324,7 @@ macro_rules! export_model {
                 capacity: usize,
                 level_rms: *mut f64,
             ) -> i64 {
-                // SAFETY: the caller's arrays, by the extension.
+                // SAFETY: the extension guarantees that the caller's arrays are valid.
                 let call = unsafe {
                     FitCall {
                         band: (band_low_hz, band_high_hz),

@@ -16,8 +16,8 @@ use crate::{Error, Values, Voice, text};
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration of the output that a new voice discards, seconds, so that the filter's transient has
-/// decayed before the first sample. A second constant limits it in samples.
+/// A new voice discards output of this duration, seconds, so that the filter's transient has
+/// decayed before the first sample. The next constant limits the number of these samples.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
 /// Number of groups of samples per step.
@@ -34,8 +34,8 @@ pub trait MovingFilter: Sized + Send + 'static {
     const RATE_FIELD: usize;
 
     /// Makes the filter that the parameters describe, and returns it with its level. The level is
-    /// the RMS of white noise after the filter and the band limits. Before the filter, the noise
-    /// has a magnitude of 1 in each bin.
+    /// the RMS that white noise has after the filter and the band limits, if its magnitude before
+    /// the filter is 1 in each bin.
     ///
     /// # Errors
     /// Returns an error if the filter is not stable, or has no finite energy in the band.
@@ -66,8 +66,8 @@ pub trait MovingFilter: Sized + Send + 'static {
     /// Filters groups of samples in place.
     fn process(&mut self, block: &mut [Group]);
 
-    /// Does the same as [`Voice::render_together`]. Override this function if the filter can
-    /// process several voices faster in one call.
+    /// Does the same as [`Voice::render_together`]. Override this function if the filter processes
+    /// several voices faster in one call than in separate calls.
     fn render_together(voices: &mut [&mut FilteredVoice<Self>], frames: usize, out: &mut [f32]) {
         let rows = out.chunks_exact_mut(frames.max(1));
         for (voice, row) in voices.iter_mut().zip(rows) {
@@ -92,7 +92,8 @@ pub struct FilteredVoice<F> {
     gain_step: f64,
     ramp_len: u32,
     ramp_left: u32,
-    /// The last group of samples. The caller has already received the first `taken` of them.
+    /// The last group of samples. The caller has already received the first `taken` samples of this
+    /// group.
     ready: GroupSamples,
     taken: usize,
 }
@@ -136,7 +137,8 @@ impl<F: MovingFilter> FilteredVoice<F> {
             taken: GROUP,
         };
         let settle = rounded_up((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
-        // A whole number of groups of noise, so that the first block begins at the start of one.
+        // The number of samples is rounded up to whole groups of noise, so that the first block
+        // begins at the start of a group.
         voice.render(&mut alloc::vec![0.0; settle.next_multiple_of(NOISE_GROUP)]);
         Ok(voice)
     }
@@ -241,8 +243,8 @@ impl<F: MovingFilter> Voice for FilteredVoice<F> {
                 " Hz accepts filters of this rate only",
             ]));
         }
-        // Before anything else changes: if the parameters are refused, the voice must continue
-        // unchanged.
+        // The target is set before anything else changes, because if it is refused, the voice must
+        // continue unchanged.
         let level = self.filter.set_target(parameters, &self.passed, self.ramp_len)?;
         self.target_gain = gain(self.rate_hz, level);
         self.ramp_left = self.ramp_len;
@@ -251,7 +253,7 @@ impl<F: MovingFilter> Voice for FilteredVoice<F> {
     }
 }
 
-/// Rounds a number of samples up. Without `std` there is no `ceil`.
+/// Rounds a number of samples up. Without `std`, `ceil` does not exist.
 fn rounded_up(samples: f64) -> u32 {
     let whole = samples as u32;
     whole + u32::from(f64::from(whole) < samples)
@@ -260,7 +262,8 @@ fn rounded_up(samples: f64) -> u32 {
 /// Returns the gain by which the noise before the filter is multiplied, so that the samples have
 /// unit RMS.
 fn gain(rate_hz: f64, level: f64) -> f64 {
-    // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
+    // Noise of variance s² has the one-sided density 2 s² / rate. A measurement of it gives
+    // magnitude² = 2 P ENBW.
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
 }
 

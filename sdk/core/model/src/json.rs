@@ -1,5 +1,5 @@
-//! The JSON text of a descriptor, generated at compile time. So a WASM module contains the JSON
-//! text, but no code that writes JSON.
+//! The JSON text of a descriptor, generated at compile time. Therefore, a WASM module contains the
+//! JSON text, but no code that writes JSON.
 
 use crate::decimal::whole;
 use crate::exact::exact;
@@ -7,8 +7,9 @@ use crate::{Kind, Scale, StaticDescriptor, StaticField, StaticOption, Store};
 
 /// Returns the length of a descriptor's JSON text in bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
-    // A buffer of length 0 stores nothing, but all bytes are counted. A const function cannot
-    // return a text whose length it has only just found.
+    // A buffer of length 0 stores nothing, but all bytes are counted. The length needs a separate
+    // function, because a const function cannot return a text whose length it has only just
+    // computed.
     written::<0>(descriptor).len
 }
 

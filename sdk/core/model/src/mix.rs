@@ -9,8 +9,8 @@ pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Value
 }
 
 /// Writes the weighted mean of parameter sets. The lists of all sets must have the same lengths.
-/// Each number of the mean lies between the smallest and the largest of the corresponding numbers
-/// in the sets. A set with weight 1 is copied unchanged. Does not allocate.
+/// Each number of the mean is limited to the range of the corresponding numbers in the sets. A set
+/// with weight 1 is copied unchanged. Does not allocate.
 ///
 /// # Errors
 /// Returns an error if the sets differ in length.
@@ -26,8 +26,8 @@ pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Re
     for i in 0..len {
         let values = || sets.iter().map(|set| set.flat()[i]);
         let sum: f64 = values().zip(weights).map(|(x, weight)| weight * x).sum();
-        // The weights sum to one only up to a rounding error, which could move a parameter out of
-        // its range.
+        // The sum of the weights may differ from one by a rounding error. This error could move a
+        // parameter out of its range.
         let low = values().fold(f64::INFINITY, f64::min);
         out.push(sum.max(low).min(values().fold(f64::NEG_INFINITY, f64::max)));
     }

@@ -11,7 +11,8 @@ use core::panic::PanicInfo;
 use crate::arena::{Arena, PAGE_BYTES};
 use crate::platform::Lock;
 
-/// Ends the instance without a message, because formatting one needs more code than a small model.
+/// Ends the instance without a message, because the code that formats a message is larger than a
+/// small model.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     unreachable()
@@ -22,8 +23,9 @@ static MEMORY: Memory = Memory(Lock::new(Arena::new()));
 
 struct Memory(Lock<Arena>);
 
-// SAFETY: the arena returns each live block once, aligned and as large as its layout, in memory
-// from `memory.grow`; a block is freed with the layout of its allocation.
+// SAFETY: the arena returns each live block only once. The block is aligned, is as large as its
+// layout, and lies in memory from `memory.grow`. A block is freed with the layout of its
+// allocation.
 unsafe impl GlobalAlloc for Memory {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let block = self.0.lock().and_then(|mut arena| arena.allocate(layout, grow));

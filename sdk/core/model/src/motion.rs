@@ -81,7 +81,7 @@ pub struct FitCondition {
 }
 
 impl FitCondition {
-    /// Converts speed and force from the two numbers of the ABI; NaN means unknown.
+    /// Makes a condition from the ABI's two numbers for speed and force. NaN means unknown.
     ///
     /// # Errors
     /// Returns [`InvalidArgument`](crate::Status::InvalidArgument) if a number is infinite or out
@@ -99,7 +99,7 @@ impl FitCondition {
         })
     }
 
-    /// Returns speed and force as the two numbers of the ABI; NaN means unknown.
+    /// Returns speed and force as two numbers for the ABI. NaN means unknown.
     pub fn numbers(self) -> (f64, f64) {
         let number = |known: Option<f64>| known.unwrap_or(f64::NAN);
         (number(self.speed_mm_s), number(self.force_n))
@@ -116,11 +116,11 @@ impl FitCondition {
 /// # How a host uses it
 ///
 /// For a voice without this trait, the host scales all frequencies with the speed and the level
-/// with the force. For a voice with this trait, the host scales nothing. The host only interpolates
-/// parameters between conditions and calls [`set_motion`](Self::set_motion). It calls this function
-/// once before the first sample, and again before each block for which the motion has changed. A
-/// host that does not support the extension never calls `set_motion`. Until the first call of
-/// `set_motion`, a voice therefore plays as if the finger moved as in the recording.
+/// with the force. For a voice with this trait, the host does not scale anything. It only
+/// interpolates parameters between conditions and calls [`set_motion`](Self::set_motion). It calls
+/// this function once before the first sample, and again before each block for which the motion has
+/// changed. A host that does not support the extension never calls `set_motion`. Until the first
+/// call of `set_motion`, a voice therefore plays as if the finger moved as in the recording.
 ///
 /// # Example
 ///
@@ -183,11 +183,12 @@ pub trait MotionVoice: Voice {
     /// Sets the motion at the next sample. All numbers are in range: the caller has checked them.
     ///
     /// The voice changes to the new motion within about 10 ms and without a click. At a speed of 0
-    /// the model decides what to play. A position far from the current one is a jump of the finger:
-    /// the voice should not play the surface between the two positions. The samples depend only on
-    /// the motions and on the times at which the host sets them, not on the block sizes. If a host
-    /// calls this function and [`retune`](Voice::retune) before the same sample, the order of the
-    /// two calls makes no difference. `[render thread, no allocation, no lock, no I/O]`
+    /// the model decides what to play. If the new position is far from the current position, the
+    /// finger has jumped, and the voice should not play the surface between the two positions. The
+    /// samples depend only on the motions and on the times at which the host sets them, not on the
+    /// block sizes. If a host calls this function and [`retune`](Voice::retune) before the same
+    /// sample, the order of the two calls makes no difference. `[render thread, no allocation, no
+    /// lock, no I/O]`
     fn set_motion(&mut self, motion: Motion);
 }
 

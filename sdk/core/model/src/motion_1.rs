@@ -2,9 +2,9 @@
 //! speed and force of the recording.
 //!
 //! For a model without the extension, the host scales the frequencies with the speed, and the level
-//! with the force. A model with the extension itself scales the frequencies and the level. Its
+//! with the force. A model with the extension scales the frequencies and the level itself. Its
 //! sound can also depend on the finger's position, e.g. for stick-slip, or for a surface that
-//! sounds the same at the same place. Native libraries and WASM modules can both have the
+//! always sounds the same at the same place. Native libraries and WASM modules can both have the
 //! extension.
 
 /// Largest speed of a finger, mm/s, in either direction.

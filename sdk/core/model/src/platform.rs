@@ -3,7 +3,7 @@
 pub use here::Lock;
 pub(crate) use here::{Once, caught, with_last_error};
 
-/// Targets with the standard library: several threads, and panics that unwind.
+/// Targets with the standard library. They have several threads, and panics unwind.
 #[cfg(feature = "std")]
 mod here {
     use alloc::string::{String, ToString};
@@ -46,8 +46,8 @@ mod here {
 
     /// Runs a call and turns a panic into an error.
     pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-        // The ABI leaves the effect of a call that panics undefined, so state that a panic left
-        // half changed is allowed.
+        // In the ABI, the effect of a call that panics is undefined. Therefore, a panic may leave
+        // the state only partly changed.
         catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
             let message = panic
                 .downcast_ref::<&str>()
@@ -66,7 +66,7 @@ mod here {
     }
 }
 
-/// WASM modules: one thread, and panics that end the instance.
+/// WASM modules. They have one thread, and a panic ends the instance.
 #[cfg(not(feature = "std"))]
 mod here {
     use alloc::string::String;

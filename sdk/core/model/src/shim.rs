@@ -192,7 +192,7 @@ impl<M: Model> State<M> {
     ) -> i64 {
         guarded(|| {
             check_rate(rate_hz)?;
-            // The slot is taken last, so a voice that cannot be made leaves none behind.
+            // The slot is taken last. If the voice cannot be made, no slot remains occupied.
             let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
             self.voices.insert(voice).ok_or_else(|| {
                 Error::new(Status::TooManyVoices, "no more voices can be made; free some voices")
@@ -233,8 +233,8 @@ impl<M: Model> State<M> {
                 *voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             }
             let voices = voices.as_mut_ptr().cast::<&mut M::Voice>();
-            // SAFETY: one pointer per handle was just made of a reference to a different voice, and
-            // the pointers are used only as these references.
+            // SAFETY: each pointer was just made from a reference, one for each handle, and each
+            // reference is to a different voice. The pointers are used only as these references.
             let voices = unsafe { core::slice::from_raw_parts_mut(voices, handles.len()) };
             M::Voice::render_together(voices, frames, out);
             Ok(0)
@@ -342,7 +342,7 @@ fn layout(len: usize) -> Option<Layout> {
 
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
-    // Not `guarded`, which would replace the text that is asked for.
+    // `guarded` is not used here, because it would replace the text that the caller asks for.
     let Some(out) = out.0 else {
         return Status::InvalidArgument as i64;
     };

@@ -22,7 +22,7 @@ pub struct StaticDescriptor {
     pub version: &'static str,
     /// One sentence that says which properties of a spectrum the model stores.
     pub summary: &'static str,
-    /// Parameter fields, in the order in which the flat parameter array contains them.
+    /// Parameter fields, in their order in the flat parameter array.
     pub fields: &'static [StaticField],
     /// Fit options, in the order in which a fit receives their values.
     pub options: &'static [StaticOption],
@@ -49,8 +49,8 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value of the field in an asset from an earlier minor version of the model that did not have
-    /// the field. Only for scalars.
+    /// Default value of the field. It is used for an asset that was written by an earlier minor
+    /// version of the model, without this field. Only for scalars.
     pub default: Option<f64>,
     /// Range of a slider for this field. It lies within `min` to `max`.
     pub usual: Option<UsualRange>,
@@ -58,8 +58,8 @@ pub struct StaticField {
     pub description: &'static str,
 }
 
-/// One fit option. The value of the option is a number or, for an option with named choices, the
-/// index of a choice.
+/// One fit option. The value of the option is a number. If the option has named choices, this
+/// number is the index of a choice.
 #[derive(Debug, Clone, Copy)]
 pub struct StaticOption {
     /// Name of the option on the command line.
@@ -76,7 +76,7 @@ pub struct StaticOption {
     pub integer: bool,
     /// Names of the choices 0, 1, …; empty if the option is a plain number.
     pub choices: &'static [&'static str],
-    /// Values of this option that a sweep of accuracy against cost (`htex tradeoff`) tries. The
+    /// A sweep of accuracy against cost (`htex tradeoff`) tries these values of the option. The
     /// sweep tries all combinations of the `sweep` values of all options. For named choices, the
     /// values are their indices.
     pub sweep: &'static [f64],
@@ -168,8 +168,8 @@ impl StaticField {
         Self { store, ..self }
     }
 
-    /// Sets the field's value in an asset from an earlier minor version of the model that did not
-    /// have the field. Only for scalars.
+    /// Sets the field's default value. It is used for an asset that was written by an earlier minor
+    /// version of the model, without this field. Only for scalars.
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }

@@ -23,8 +23,8 @@ pub enum Kind {
     },
 }
 
-/// Encoding of a field's values in a file. The integer encodings store whole numbers `q`. The value
-/// that belongs to `q` is `offset + scale·q`, or `exp(offset + scale·q)` if `log` is set.
+/// Encoding of a field's values in a file. The integer encodings store whole numbers `q`. A number
+/// `q` stands for the value `offset + scale·q`, or for `exp(offset + scale·q)` if `log` is set.
 ///
 /// ```
 /// use htex_model::{StaticField, Store};

@@ -245,7 +245,7 @@ pub trait Model: 'static {
 
     /// Writes the magnitude of the shape at each frequency in `frequency_hz`. The shape has unit
     /// RMS on the 5 Hz grid in the band, and is zero outside the band. The value at a frequency
-    /// must not depend on which other frequencies the call contains.
+    /// must not depend on the other frequencies of the call.
     ///
     /// # Errors
     /// Returns an error if the parameters describe no spectrum in this band.
@@ -261,8 +261,8 @@ pub trait Model: 'static {
     /// to eight sets on the render thread: `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// Returns an error if the sets cannot be interpolated, e.g. because their lists differ in
-    /// length.
+    /// Returns an error if the sets cannot be interpolated, e.g. because their lists have different
+    /// lengths.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -311,18 +311,18 @@ pub trait Model: 'static {
 /// [`render`](Self::render) cannot fail. A voice that cannot continue must write zeros. If a voice
 /// panics, the content of `out` is undefined.
 ///
-/// The example of [`Model`] implements this trait. Models that play noise with a given spectrum
-/// implement [`ShapedModel`](crate::shaped::ShapedModel) instead. Models that play noise through a
-/// filter use [`FilteredVoice`](crate::filtered::FilteredVoice).
+/// The example in the documentation of [`Model`] implements this trait. Models that play noise with
+/// a given spectrum implement [`ShapedModel`](crate::shaped::ShapedModel) instead. Models that play
+/// noise through a filter use [`FilteredVoice`](crate::filtered::FilteredVoice).
 pub trait Voice: Send + 'static {
     /// Fills `out` with the next samples. `out` may have any length and any previous content.
     /// `[render thread, no allocation, no lock, no I/O]`
     fn render(&mut self, out: &mut [f32]);
 
     /// Fills `out` with the next `frames` samples of each voice, one voice after another. The
-    /// samples must be bit-identical to the samples of [`Self::render`]. The default calls `render`
-    /// for each voice; override it if the model can render several voices faster in one call.
-    /// `[render thread, no allocation, no lock, no I/O]`
+    /// samples must be bit-identical to the samples of [`Self::render`]. The default implementation
+    /// calls `render` for each voice. Override it if the model renders several voices faster in one
+    /// call. `[render thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where
         Self: Sized,

@@ -178,8 +178,8 @@ impl<'a> Values<'a> {
         Ok((Self { flat, spans }, at))
     }
 
-    /// Returns the numbers of field `i`, or the one number if it is a scalar field. Returns an
-    /// empty slice if there is no field `i`.
+    /// Returns the numbers of field `i`. A scalar field has one number. Returns an empty slice if
+    /// there is no field `i`.
     pub fn list(&self, i: usize) -> &'a [f64] {
         let (start, end) = self.spans.get(i).copied().unwrap_or_default();
         &self.flat[start as usize..end as usize]
@@ -226,7 +226,7 @@ fn list_length(field: &Range<'_>, value: Option<f64>, max_len: u32) -> Result<us
 }
 
 fn whole_part(x: f64) -> f64 {
-    // Without `std` there is no `trunc`.
+    // Without `std`, `trunc` does not exist.
     x as u64 as f64
 }
 

@@ -10,8 +10,8 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use crate::platform::{Lock, Once};
 
 /// Slots in the first chunk. Chunk `c` has `FIRST << c` slots, and is allocated when it gets its
-/// first voice. So a model with one voice needs the memory of a few slots (up to 2.8 kB each), and
-/// a model with a thousand voices allocates at most twice as many slots as it uses.
+/// first voice. Therefore, a model with one voice needs only the memory of a few slots (up to 2.8
+/// kB each). A model with a thousand voices allocates at most twice as many slots as it uses.
 const FIRST: usize = 4;
 /// Largest number of voices at a time. It is smaller in a WASM module, because an instance of a
 /// module has only one or two voices.
@@ -28,14 +28,15 @@ const fn place(index: usize) -> (usize, usize) {
 /// A collection of up to 65,536 voices (1,024 in a WASM module), accessed by handles.
 ///
 /// A handle consists of a slot's index and the slot's generation, which changes whenever a voice is
-/// inserted or removed. So the handle of a removed voice stays invalid when its slot is used again.
+/// inserted or removed. Therefore, the handle of a removed voice stays invalid even when its slot
+/// is used again.
 pub(crate) struct Voices<V> {
     chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
     free: Lock<Free>,
 }
 
 struct Slot<V> {
-    /// Odd while the slot contains a voice.
+    /// The generation is odd while the slot contains a voice.
     generation: AtomicU32,
     voice: UnsafeCell<Option<V>>,
 }
@@ -45,8 +46,9 @@ struct Free {
     never_used: u32,
 }
 
-// SAFETY: only two kinds of callers access a slot's voice: the thread that inserts or removes it,
-// which holds the `free` lock, and `get`, whose caller guarantees exclusive access to that voice.
+// SAFETY: only two kinds of callers access a slot's voice. The first is a thread that inserts or
+// removes the voice, and this thread holds the lock of `free`. The second is `get`, whose caller
+// guarantees exclusive access to the voice.
 unsafe impl<V: Send> Sync for Voices<V> {}
 
 impl<V> Default for Voices<V> {
@@ -82,13 +84,14 @@ impl<V> Voices<V> {
             (0..FIRST << chunk).map(|_| slot()).collect()
         });
         let slot = &slots[offset];
-        // SAFETY: the slot is free (its index came from the free list, whose lock is held), so no
-        // valid handle to it exists.
+        // SAFETY: the slot's index came from the free list, whose lock is held. Therefore, the slot
+        // is free, and no valid handle to it exists.
         unsafe { *slot.voice.get() = Some(voice) };
-        // `Release`, after the voice was written: a thread that sees the new generation also sees
-        // the voice.
+        // The generation is changed with `Release` after the voice was written, so that a thread
+        // that sees the new generation also sees the voice.
         let generation = slot.generation.fetch_add(1, Ordering::Release) + 1;
-        // 31 bits of the generation, and the index plus one: a handle is above zero.
+        // The handle contains 31 bits of the generation, and the index plus one. So it is above
+        // zero.
         Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
     }
 
@@ -121,8 +124,8 @@ impl<V> Voices<V> {
         let slot = self.chunks.get(chunk)?.get()?.get(offset)?;
         // The counterpart of `Release` in `insert`.
         let generation = slot.generation.load(Ordering::Acquire);
-        // A negative handle has the highest bit set here, which no stored generation has. After
-        // 2³⁰ voices in one slot, its first handle would be valid again.
+        // For a negative handle, the highest bit of `wanted` is set. No stored generation has this
+        // bit. After 2³⁰ voices in one slot, the slot's first handle would become valid again.
         let wanted = (handle >> 32) as u32;
         (generation % 2 == 1 && generation & 0x7fff_ffff == wanted).then_some(slot)
     }
@@ -151,7 +154,7 @@ mod tests {
         assert_eq!(voices.remove(a), None);
     }
 
-    /// Voices of several chunks keep their places while chunks are added.
+    /// When chunks are added, the voices in earlier chunks keep their places.
     #[test]
     fn chunks_are_made_as_needed() {
         let voices = Voices::new();

@@ -1,24 +1,24 @@
 //! Serves a folder of files, such as the studio, to browsers on this machine only.
 //!
-//! The server reads all files of the folder into memory when it starts, so no request can make it
-//! open a file on disk. The server refuses folders that contain links. Such a folder may come from
-//! another person, and that person's scripts could read the files to which the links point.
+//! When the server starts, it reads all files of the folder into memory, so no request can make it
+//! open a file on disk. The server refuses folders that contain links. A folder may come from
+//! another person, and the scripts in it could read the files to which links point.
 //!
 //! The address is `http://NAME.localhost:PORT/`. NAME is a keyed hash of the folder, and only this
 //! user can read the key. A browser keeps service workers and stored data separately for each name.
-//! So other programs cannot leave a script at this address, and a page of one folder cannot read
-//! what a page of another folder stored. The same folder always gets the same name. The server
-//! refuses requests to any other host name, including `127.0.0.1`.
+//! Therefore, other programs cannot leave a script at this address, and a page of one folder cannot
+//! read data that a page of another folder stored. The same folder always gets the same name. The
+//! server refuses requests to any other host name, including `127.0.0.1`.
 //!
 //! A page must not navigate its tab to another origin. Otherwise, a script could read the files
 //! that the user drops on the page, and send their contents to another server as part of the new
 //! address. No header can forbid navigation: browsers never supported `navigate-to`, and a sandbox
-//! without `allow-top-navigation` restricts only frames. So each page begins with `stay.js`, which
-//! uses the Navigation API to cancel every navigation to another origin. `stay.js` has no effect in
-//! a browser without that API (`'navigation' in window` is false). The server does not serve
-//! scripts of service workers, because a service worker could answer a request for the page with a
-//! different page. Two ways to send data remain open to scripts: host names that a browser looks up
-//! ahead of time (`dns-prefetch`), and WebRTC.
+//! without `allow-top-navigation` restricts only frames. Therefore, each page begins with
+//! `stay.js`, which uses the Navigation API to cancel every navigation to another origin. `stay.js`
+//! has no effect in a browser without that API (`'navigation' in window` is false). The server does
+//! not serve scripts of service workers, because a service worker could answer a request for the
+//! page with a different page. Two ways to send data remain open to scripts: host names that a
+//! browser looks up ahead of time (`dns-prefetch`), and WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,8 +35,7 @@ use super::gate::{Refusal, check_origin, host};
 use super::server::{Answers, Server, hexadecimal, listen, page_error};
 use crate::error::LabError;
 
-/// Limits of a folder: the number of files, the size of one file, and how deep folders may be
-/// nested.
+/// Limits of a folder: the number of files, the size of one file, and the nesting depth of folders.
 const MOST_FILES: usize = 1_000;
 const MOST_BYTES: u64 = 64 << 20;
 const MOST_DEPTH: usize = 4;
@@ -44,7 +43,7 @@ const MOST_DEPTH: usize = 4;
 const INDEX: &str = "index.html";
 
 /// The script that keeps a page at its address, and the text that is put at the start of each page.
-/// Browsers ignore the page's own doctype, which is then the second one.
+/// The page's own doctype is then the second one, and browsers ignore it.
 const STAY: &str = include_str!("stay.js");
 const STAY_NAME: &str = "htex-stay.js";
 const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>";
@@ -56,7 +55,7 @@ const SVG: &str = "image/svg+xml";
 const PICTURE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 const POLICY: &str = "Content-Security-Policy";
 
-/// Headers of all files. They forbid a page to access anything outside the folder.
+/// Headers of all files. These headers forbid a page to access anything outside the folder.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-cache"),
     ("Referrer-Policy", "no-referrer"),
@@ -106,13 +105,14 @@ impl ServedFolder {
     }
 }
 
-/// Returns a file as it is served. Adds to a page the script that keeps it at its address.
+/// Returns a file as it is served. If the file is a page, adds the script that keeps the page at
+/// its address.
 fn kept_at_home((name, bytes): (String, Bytes)) -> (String, Bytes) {
     if kind_of(&name) != HTML {
         return (name, bytes);
     }
-    // Removes a byte order mark, which would become text of the page, because it would no longer
-    // come first.
+    // Removes a byte order mark. It would no longer come first, so it would become text of the
+    // page.
     let text = bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(&bytes);
     let begun = [BEGINNING.as_bytes(), text].concat();
     (name, begun.into())
@@ -121,10 +121,11 @@ fn kept_at_home((name, bytes): (String, Bytes)) -> (String, Bytes) {
 /// Returns the name at which a folder is served: 32 hexadecimal digits that nobody without the key
 /// can know.
 fn name(folder: &Path, key: &Key) -> String {
-    // Resolves the path, so that a folder has one name, whichever path leads to it.
+    // The path is resolved, so that a folder has only one name, whichever path leads to it.
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
-    // All 32 bytes would be 64 digits, and a label of a host name has at most 63.
+    // The whole tag of 32 bytes would give 64 digits, but a label of a host name has at most 63
+    // characters.
     hexadecimal(&tag[..16])
 }
 
@@ -200,7 +201,7 @@ impl Answers for Files {
         for (name, value) in HEADERS {
             headers.insert(name, HeaderValue::from_static(value));
         }
-        // Replaces the policy of the pages, because an image may contain scripts.
+        // An image may contain scripts. Therefore, this policy replaces the policy of pages.
         if kind == SVG {
             headers.insert(POLICY, HeaderValue::from_static(PICTURE_POLICY));
         }
@@ -300,7 +301,7 @@ mod tests {
         assert_ne!(own, name(&one, &Key::passing().unwrap()));
     }
 
-    /// A page made by somebody else could read what a link leads to.
+    /// A page from another person could read the file to which a link points.
     #[cfg(unix)]
     #[test]
     fn a_link_in_the_folder_is_refused() {

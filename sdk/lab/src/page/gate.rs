@@ -8,7 +8,7 @@ use hyper::header::{HOST, HeaderName, ORIGIN};
 use hyper::http::request::Parts;
 use hyper::{Method, StatusCode};
 
-/// A tab that has not sent a request for this long counts as gone.
+/// If a tab has not sent a request for this time, it counts as closed.
 const SILENT: Duration = Duration::from_secs(8);
 
 /// Decides which requests a page accepts.
@@ -69,8 +69,8 @@ impl Gate {
 }
 
 /// Returns the host of a server on this machine, with a name that only its user knows. A browser
-/// keeps scripts (service workers) and data separately for each name, so what another program left
-/// at `127.0.0.1` cannot reach this host.
+/// keeps scripts (service workers) and data separately for each name. Therefore, a script that
+/// another program left at `127.0.0.1` cannot access this host.
 pub(super) fn host(name: &str, port: u16) -> String {
     format!("{name}.localhost:{port}")
 }
@@ -83,7 +83,7 @@ pub(super) fn check_origin(head: &Parts, hosts: &[String]) -> Result<(), Refusal
         let why = "this page is for this machine alone";
         return Err((StatusCode::FORBIDDEN, why));
     }
-    // Programs other than browsers send no origin; requests of the page send one.
+    // Requests of the page contain an origin. Programs other than browsers send none.
     let is_own = |origin: Option<&str>| {
         let host = origin.and_then(|origin| origin.strip_prefix("http://"));
         host.is_some_and(is_host)
@@ -111,7 +111,7 @@ impl Owner {
             None => true,
             Some((owner, last)) => owner == tab || now.duration_since(*last) > SILENT,
         };
-        // A request without a tab must not take the page over.
+        // A request that names no tab must not take over the page.
         let admitted = is_free && !tab.is_empty();
         if admitted {
             *owner = Some((tab.to_owned(), now));

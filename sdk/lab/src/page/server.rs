@@ -5,8 +5,8 @@
 //! before the request's body arrives. The gate decides from the head of the request whether to
 //! refuse it. The server then reads the body, up to 4096 bytes. Head and body each have a deadline
 //! of one second. At most 64 connections are open. If 64 connections are open, a new connection
-//! replaces the oldest one that has not passed the gate. If all have passed the gate, the new
-//! connection replaces the oldest of all.
+//! replaces the oldest connection whose requests have not passed the gate. If all connections have
+//! passed it, the new connection replaces the oldest one.
 //!
 //! `hyper` is already a dependency of the command, because remote stores use it. `tiny_http` would
 //! read a request's body before the gate could refuse the request. It also has no deadlines, and
@@ -39,18 +39,18 @@ use crate::page::Content;
 
 /// Largest number of open connections.
 const MOST_CONNECTIONS: usize = 64;
-/// Longest wait for the head of a request, also of the next request on the same connection, and for
-/// its body.
+/// Longest wait for the head of a request, and also for its body. The limit also applies to the
+/// next request on the same connection.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Longest body of a request, bytes.
 const MOST_BYTES: usize = 4096;
-/// Largest size of a head in bytes (the smallest limit that `hyper` accepts), and largest number of
-/// its lines.
+/// Largest size of a head in bytes (`hyper` accepts no smaller limit), and largest number of lines
+/// of a head.
 const MOST_HEAD_BYTES: usize = 8192;
 const MOST_HEADERS: usize = 64;
 /// Wait after a failure to accept a connection, such as too many open files.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Longest wait at the end for the page to show that everything is done.
+/// Longest wait at the end of a session until the page shows that everything is done.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// Requests that every page takes.
@@ -59,7 +59,7 @@ const LEAVE: &str = "leave";
 const STOP: &str = "stop";
 
 const TEXT: &str = "text/plain; charset=utf-8";
-/// Headers of each reply. `same-origin` makes requests of the page state the page's origin.
+/// Headers of each reply. With `same-origin`, requests of the page state the page's origin.
 const HEADERS: [(&str, &str); 4] = [
     ("Cache-Control", "no-store"),
     ("Referrer-Policy", "same-origin"),
@@ -114,7 +114,7 @@ impl LocalPage {
     /// Serves a page on this machine. Port 0 means any free port.
     ///
     /// # Errors
-    /// If the port is taken or there are no random numbers.
+    /// Returns an error if the port is taken, or if the system provides no random numbers.
     pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, LabError> {
         let (listener, own_port) = listen(port).map_err(|error| page_error(port, error))?;
         let mut random = [[0u8; 16]; 2];
@@ -185,7 +185,7 @@ impl Server {
                 let _ = ended.await;
                 server.abort();
             });
-            // Dropping the runtime ends all connections, whatever they are waiting for.
+            // When the runtime is dropped, all connections end, even those that wait for something.
         };
         let thread = std::thread::Builder::new().name("htex-page".to_owned()).spawn(serving)?;
         Ok(Self { end: Some(end), thread: Some(thread) })
@@ -214,7 +214,7 @@ async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
         };
         guests.retain(|guest| !guest.task.is_finished());
         if guests.len() >= MOST_CONNECTIONS {
-            // If all of them have passed the gate, the oldest one leaves.
+            // If all connections have passed the gate, the oldest one is closed.
             let is_stranger = |guest: &Guest| !guest.is_known.load(Ordering::Relaxed);
             let leaves = guests.iter().position(is_stranger).unwrap_or(0);
             if let Some(guest) = guests.remove(leaves) {
@@ -225,7 +225,7 @@ async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
         let attending = attend(socket, Arc::clone(&desk), Arc::clone(&is_known));
         let task = tokio::spawn(attending).abort_handle();
         guests.push_back(Guest { task, is_known });
-        // Lets the new connection be processed before another one can replace it.
+        // Gives the new connection time to be processed before another connection can replace it.
         tokio::task::yield_now().await;
     }
 }
@@ -286,7 +286,7 @@ impl<C: Content> Answers for Desk<C> {
 /// JSON counts as null.
 async fn read(body: Incoming) -> Result<Value, Refusal> {
     let too_long = (StatusCode::PAYLOAD_TOO_LARGE, "the request is too long");
-    // The head states this length, so nothing of a long body is read.
+    // The head states the length of the body, so a body that is too long is not read at all.
     if body.size_hint().lower() > MOST_BYTES as u64 {
         return Err(too_long);
     }

@@ -49,7 +49,7 @@ impl Calibration {
     }
 
     /// Parses the text of a calibration file. The extension of `path` determines the format, and
-    /// messages name `path`.
+    /// error messages contain `path`.
     ///
     /// # Errors
     /// Returns the errors of [`Self::read`].
@@ -130,8 +130,8 @@ fn lines(text: &str) -> Result<Vec<Vec<f64>>, String> {
     Ok(rows)
 }
 
-/// Computes the rank by elimination with pivots. A pivot below 1e-12 of the largest number counts
-/// as zero.
+/// Computes the rank by elimination with pivots. A pivot below 1e-12 times the largest number
+/// counts as zero.
 fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
     let largest = rows.iter().flatten().fold(0.0_f64, |a, v| a.max(v.abs()));
     for column in 0..AXES {

@@ -2,9 +2,9 @@
 //! target (the requested speed and force), and the number of sweeps.
 //!
 //! A sweep is one stroke of the finger over the surface. The spectrum of a take uses only the
-//! middles of its sweeps. In these middles the finger may be on target, even if the finger is
-//! lifted for most of the take. For example, in one take of 10 s the finger was lifted after 3.2 s,
-//! but the middles of the three sweeps kept to the target.
+//! middles of its sweeps. The finger may be on target in all these middles even if it is lifted for
+//! most of the take. For example, in one take of 10 s the finger was lifted after 3.2 s, but in the
+//! middles of its three sweeps it kept to the target.
 
 use htex_author::recording::Sums;
 use htex_author::{Recording, Segments, sliding};
@@ -13,12 +13,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::guide::Guidance;
 
-/// Half the length of the moving averages that judge a take, seconds. The whole length is 50 ms.
+/// A take is judged by moving averages. This is half their length, seconds. The whole length is 50
+/// ms.
 const HALF_MEAN_S: f64 = 0.025;
 /// Lowest speed at which the finger counts as moving on its target, as a fraction of the target
 /// speed. A hand turns between strokes, and within a stroke it minimises jerk (T. Flash, N. Hogan
-/// 1985, Journal of Neuroscience 5). So its speed rises and falls all the time. At most 0.31 of
-/// such a stroke is within 10 % of a target speed, but 0.57 of it is above half the target speed.
+/// 1985, Journal of Neuroscience 5). Therefore, its speed rises and falls all the time. At most
+/// 0.31 of such a stroke is within 10 % of a target speed, but 0.57 of it is above half the target
+/// speed.
 const LOWEST_SPEED: f64 = 0.5;
 /// Relative difference that counts as rounding.
 const ROUNDING: f64 = 1e-9;
@@ -28,7 +30,7 @@ const ROUNDING: f64 = 1e-9;
 #[schemars(deny_unknown_fields)]
 pub struct Requirements {
     /// Smallest share of the take in which the finger slides on its target, 0 to 1
-    /// ([`Coverage::on_target`]). With 0, there is no requirement.
+    /// ([`Coverage::on_target`]). If this is 0, there is no requirement.
     #[schemars(range(min = 0, max = 1))]
     pub on_target: f64,
     /// Smallest number of complete sweeps. With 0, there is no requirement.
@@ -38,10 +40,10 @@ pub struct Requirements {
 impl Requirements {
     /// No requirements.
     pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
-    /// Default of [`Self::on_target`]. This value was chosen with simulated takes of 10 s with
-    /// strokes of 83 mm, on five surfaces with four seeds for each surface. Complete takes had
-    /// shares of 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s). Takes in which the finger was lifted for
-    /// the second half had shares of at most 0.47.
+    /// Default of [`Self::on_target`]. Simulated takes were used to choose this value. They lasted
+    /// 10 s, had strokes of 83 mm, and were made on five surfaces with four seeds for each surface.
+    /// Complete takes had shares of 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s). Takes in which the
+    /// finger was lifted for the second half had shares of at most 0.47.
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
     /// Returns the default of [`Self::sweeps`]. The result is half the number of strokes that the
@@ -51,7 +53,7 @@ impl Requirements {
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
-        // With fewer than two strokes the number is negative, and none is required.
+        // With fewer than two strokes the number is negative, and the requirement is 0 sweeps.
         u32::try_from((strokes - 2) / 2).unwrap_or(0)
     }
 }
@@ -161,7 +163,7 @@ impl Coverage {
 }
 
 /// Returns, for each sample, whether the mean over 50 ms around it is within a range. Returns
-/// `None` without a range or values.
+/// `None` if there is no range or if there are no values.
 fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
     let (values, [low, high]) = (values?, range?);
     let means = Sums::new(values.iter().copied());
@@ -177,7 +179,7 @@ fn share(on: &[bool]) -> f64 {
 fn longest_off(on: &[bool]) -> Option<[usize; 2]> {
     let mut longest: Option<[usize; 2]> = None;
     let mut begin = 0;
-    // The added end closes a stretch that lasts until the last sample.
+    // The added element ends a stretch that lasts until the last sample.
     for (at, is_on) in on.iter().copied().chain([true]).enumerate() {
         if is_on {
             let is_longer = longest.is_none_or(|[from, to]| at - begin > to - from);

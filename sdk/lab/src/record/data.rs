@@ -47,7 +47,7 @@ pub struct TakeHeader {
     /// The role and the unit of each recorded signal. No role occurs twice.
     #[schemars(with = "Vec<SignalText>", length(min = 1))]
     pub signals: Vec<(String, String)>,
-    /// Mean of each signal that was subtracted as tare. Empty if the session has no tare.
+    /// For each signal, the mean that was subtracted as tare. Empty if the session has no tare.
     pub tare: Vec<f64>,
     /// The role and the unit of each signal of the tracker, except the time. No role occurs twice.
     /// Empty if there is no tracker.
@@ -148,7 +148,7 @@ impl TakeData {
     /// Appends interleaved rows of the tracker. Leaves out rows that are not finite or that are not
     /// later than the previous row, because positions could not be interpolated between them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
-        // Without a tracker there are no columns, and chunks of 0 would panic.
+        // Without a tracker there are no columns, and chunks of length 0 would cause a panic.
         for row in rows.chunks_exact(self.tracker.len().max(1)) {
             let last_s = self.tracker.first().and_then(|time_s| time_s.last());
             if row.iter().all(|value| value.is_finite()) && last_s.is_none_or(|t| row[0] > *t) {

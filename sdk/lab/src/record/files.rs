@@ -45,7 +45,7 @@ pub enum Outcome {
 }
 
 impl Format {
-    /// Returns an error if files of this format cannot have the sample rate.
+    /// Returns an error if this format cannot store the sample rate.
     ///
     /// # Errors
     /// [`LabError::Setup`].
@@ -142,7 +142,7 @@ fn number(stem: &str, name: &str) -> Option<u32> {
 
 /// Returns the part files of a folder, sorted by name.
 pub(crate) fn part_files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    // Hidden files are unfinished ones of `OwnFolder`, and not takes.
+    // Hidden files are not takes, but unfinished files of `OwnFolder`.
     let is_part = |path: &PathBuf| {
         let is_hidden =
             path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));

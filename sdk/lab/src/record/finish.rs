@@ -24,7 +24,8 @@ pub struct TakeReport {
     pub fit: Vec<String>,
 }
 
-/// Adds to an error the file that contains the beginning of the take that was cut short.
+/// A take was cut short by an error. Adds to this error the path of the file that contains the
+/// beginning of the take.
 pub(crate) fn with_kept(error: LabError, kept: Option<TakeReport>) -> LabError {
     let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
     let kept = kept.map(|kept| kept.file);
@@ -59,8 +60,8 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, L
             })
         }
     };
-    // Removed only now, when the recording is on disk. If the program crashes before this, the take
-    // can be recovered.
+    // The part file is removed only now, when the recording is on disk. If the program crashes
+    // earlier, the take can be recovered.
     let name = path.file_name().unwrap_or_default();
     OwnFolder::new(folder).remove(Path::new(name)).writing(path)?;
     Ok(recorded)

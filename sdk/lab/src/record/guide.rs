@@ -92,8 +92,8 @@ impl Phase {
         }
     }
 
-    /// Returns the time since the start of the take, seconds; negative during the countdown.
-    /// Returns `None` in phases without motion of the target.
+    /// Returns the time since the start of the take, seconds. It is negative during the countdown.
+    /// Returns `None` in phases in which the target does not move.
     #[must_use]
     pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
         match self {

@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use crate::record::coverage::{Coverage, Target};
 use crate::record::data::{TakeData, TakeHeader, texture_axes};
 
-/// Time at the start and at the end of a take that the tracker need not cover, seconds.
+/// At the start and at the end of a take, the tracker need not cover this time, seconds.
 const UNTRACKED_S: f64 = 0.25;
-/// Longest time between two rows of a tracker, seconds, over which a position is still
-/// interpolated.
+/// A position is interpolated between two rows of a tracker only if they are at most this time
+/// apart, seconds.
 const GAP_S: f64 = 0.2;
 
 /// A quantity measured over the sweeps of a take.
@@ -158,8 +158,8 @@ fn speed(data: &TakeData) -> Option<Vec<f64>> {
     })
 }
 
-/// Interpolates linearly between rows of ascending times. Before the first and after the last row,
-/// returns their values.
+/// Interpolates linearly between rows of ascending times. Before the first row and after the last
+/// row, returns the value of that row.
 fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let after = time_s.partition_point(|t| *t <= at_s);
     match (after.checked_sub(1), after < values.len()) {
@@ -206,7 +206,7 @@ fn differs(what: &str, unit: &str, target: Target, measured: MeanRange) -> Optio
     })
 }
 
-/// Returns a phrase if the tracker does not cover a part of the take.
+/// Returns a phrase if a part of the take is not covered by the tracker.
 fn untracked(data: &TakeData) -> Option<String> {
     let time_s = data.tracker.first()?;
     let end_s = data.recorded_s();

@@ -15,7 +15,7 @@ const LIVE_S: f64 = 0.4;
 /// Level that stands for a magnitude of zero, decibels.
 const SILENCE_DB: f64 = -200.0;
 /// Factor that converts a sum of squared magnitudes to a squared RMS. The Hann window spreads a
-/// sinusoid, so that the sum has 1.5 times its power.
+/// sinusoid over several bins, so the sum is 1.5 times the sinusoid's power.
 const SQUARED_RMS: f64 = 1.0 / 3.0;
 
 /// The newest 0.4 s of a texture's signal.

@@ -20,10 +20,10 @@ use crate::record::live::{LiveSignal, LiveSpectrum};
 use crate::record::setup::{Setup, Tare};
 use crate::record::stored::kept_spectrum;
 
-/// Longest time for which the page extrapolates the motion of a state until the next state arrives,
+/// Until the next state arrives, the page extrapolates the motion, but at most for this time,
 /// seconds.
 const CONTINUED_S: f64 = 0.1;
-/// Step of the upper end of the spectrum's scale, decibels.
+/// The upper end of the spectrum's scale is a multiple of this step, decibels.
 const SCALE_STEP_DB: f64 = 10.0;
 /// Lowest value of the scale's upper end, decibels. Sensors cannot measure anything below it.
 const LOWEST_TOP_DB: f64 = -100.0;
@@ -213,7 +213,8 @@ impl GuidePage {
     /// Shows a completed take.
     pub fn told(&self, take: &TakeReport) {
         let about = &self.shown.session;
-        // Read before the lock is taken, because the recording would wait for the lock.
+        // The spectrum is read before the lock is taken, because otherwise the recording would wait
+        // for the lock.
         let kept = match take.outcome {
             Outcome::Kept => kept_spectrum(&self.shown.folder, &about.title, about.quantity),
             Outcome::Rejected | Outcome::Incomplete => None,
@@ -274,7 +275,8 @@ impl SharedState {
             motion_s,
             position_mm: now.and_then(|now| now.position_mm),
             force_n,
-            // In a phase without motion, the finger is not on the surface.
+            // In a phase without motion, the finger is not on the surface, so the force is not
+            // compared.
             force: self.guidance.force(force_n.filter(|_| motion_s.is_some())),
             frequency_hz,
             level_db: level_db.iter().copied().map(hundredths).collect(),
@@ -300,7 +302,8 @@ impl Content for SharedState {
             state.is_end_shown = state.end.is_some();
             (state.now, state.signal.clone(), state.end.is_some())
         };
-        // Computed after the lock is released, so that the recording does not wait for it.
+        // The spectrum is computed after the lock is released, so that the recording does not wait
+        // for it.
         let spectrum = signal.spectrum();
         let changing = self.changing(now, has_ended, spectrum);
         let mut state = self.lock();

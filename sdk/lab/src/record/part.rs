@@ -47,7 +47,8 @@ impl PartFile {
         let begun = || -> std::io::Result<File> {
             let (folder, name) = OwnFolder::of_file(path)?;
             let mut file = OwnFolder::private(folder.path()).create(&name)?;
-            // Locked before the header is written: `recover` removes a file without a whole header.
+            // The file is locked before the header is written, because `recover` removes a file
+            // without a complete header.
             file.try_lock().map_err(std::io::Error::other)?;
             file.write_all((serde_json::to_string(header)? + "\n").as_bytes())?;
             file.sync_all()?;
@@ -125,7 +126,7 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.map_err(FileError::in_file(path))?;
-    // The program that writes a part file holds its lock.
+    // A program that is writing a part file holds the file's lock.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         return Err(LabError::busy(path, "recording into it"));
     }

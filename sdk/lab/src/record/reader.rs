@@ -71,11 +71,12 @@ impl Reader {
     /// time.
     ///
     /// # Errors
-    /// The errors of the source and of the tracker, [`LabError::Silent`], and
+    /// Returns the errors of the source and of the tracker, [`LabError::Silent`], and
     /// [`LabError::Ended`].
     pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, LabError> {
         let (rate_hz, width) = (self.source.stream().rate_hz, self.source.stream().channels.len());
-        // At least one frame, because at a sample rate below 50 Hz a block would have none.
+        // A block has at least one frame. At a sample rate below 50 Hz, it would have none
+        // otherwise.
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
         self.samples.resize(block * width, 0.0);
         let since = *self.since.get_or_insert_with(Instant::now);
@@ -144,7 +145,8 @@ impl Block {
 
 pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), LabError> + 'a;
 
-/// Length of the mean for the displayed force, seconds. Means of the same length judge a take.
+/// The displayed force is a mean over this time, seconds. Takes are judged by means over the same
+/// time.
 const FORCE_S: f64 = 0.05;
 
 /// Whether a session continues.
@@ -152,7 +154,7 @@ const FORCE_S: f64 = 0.05;
 pub enum Next {
     /// The session continues.
     Go,
-    /// The session ends. The samples recorded so far stay on disk.
+    /// The session ends. The samples that were recorded until then stay on disk.
     Stop,
 }
 
@@ -171,7 +173,7 @@ impl Span {
     }
 }
 
-/// Reads phases and follows the finger.
+/// Reads phases, and keeps track of the finger's position.
 pub(crate) struct Phases {
     pub(crate) reader: Reader,
     path: FingerPath,
@@ -235,8 +237,8 @@ impl Phases {
         Some(self.force.mean().abs())
     }
 
-    /// Returns the finger's position. It comes from the tracker if there is one, otherwise from the
-    /// source.
+    /// Returns the finger's position. The position comes from the tracker if there is one,
+    /// otherwise from the source.
     fn position(&mut self, block: &Block) -> Option<f64> {
         for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
             let own = self

@@ -95,8 +95,8 @@ struct Player {
 }
 
 impl Player {
-    /// Waits until at least one frame is due. Returns the number of frames that are due by then, at
-    /// most `most`.
+    /// Waits until at least one frame is due, at most for `timeout`. Returns the number of frames
+    /// that are then due, at most `most`.
     fn due(&self, begun: Instant, most: usize, timeout: Duration) -> usize {
         if !self.is_paced {
             return most;

@@ -106,7 +106,7 @@ impl Session {
 
     /// Measures the forces without a finger on the surface.
     fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), LabError> {
-        // An earlier tare must not be part of the new means.
+        // The earlier tare is removed first, so that it does not affect the new means.
         self.phases.reader.inputs.signals.tare(&[]);
         let (mut sums, mut count) = (vec![0.0; self.phases.reader.inputs.signals.list().len()], 0);
         self.phases.run(Span::new(Phase::Tare, 0, TARE_S), watch, &mut |block| {
@@ -132,7 +132,7 @@ impl Session {
         self.phases.run(countdown, watch, &mut |_| Ok(()))?;
         let header = self.header(number);
         let mut part = PartFile::create(&files::part_file(&folder, &header.name, number), &header)?;
-        // Rows of the tracker from before this time do not belong to the take.
+        // Earlier rows of the tracker do not belong to the take.
         let begin_s = self.phases.reader.now_s();
         let span = Span::new(Phase::Take, number, header.seconds);
         let ran = self.phases.run(span, watch, &mut |block| {
@@ -140,7 +140,7 @@ impl Session {
             part.push_tracker(&block.rows_since(&header, begin_s));
             part.push(&block.interleaved())
         });
-        // Flushed even after an error, so that the beginning of the take is not lost.
+        // The file is flushed even after an error, so that the beginning of the take is not lost.
         let flushed = part.flush();
         let path = part.path().to_owned();
         // Releases the lock, because `finish` reads the file.

@@ -24,15 +24,15 @@ pub struct Setup {
     /// Length of the countdown before each take, seconds. During this time the finger can start to
     /// follow the target.
     pub countdown_s: f64,
-    /// When to measure the mean forces over one second, without a finger on the surface. The
-    /// session subtracts these means from the forces of the takes.
+    /// When to measure the forces without a finger on the surface. The session computes their means
+    /// over one second, and subtracts these means from the forces of the takes.
     pub tare: Tare,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
     /// Target speed and normal force.
     pub target: Exploration,
-    /// Allowed relative difference from the target, for the mean, minimum and maximum of the speed
-    /// and of the force; 0.1 in the paper (`docs/paper.md`).
+    /// Allowed relative difference from the target. It applies to the mean, the minimum and the
+    /// maximum of the speed and of the force. In the paper (`docs/paper.md`), it is 0.1.
     pub tolerance: f64,
     /// Requirements that a take must meet to be accepted.
     pub required: Requirements,
@@ -54,7 +54,7 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. From the second take on, the user first gets time to lift the finger; this
+    /// Before each take. From the second take on, the user first gets time to lift the finger. This
     /// time is as long as the countdown.
     Each,
 }

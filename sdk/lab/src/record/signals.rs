@@ -15,8 +15,8 @@ pub struct Signals {
     width: usize,
     calibrations: Vec<Calibration>,
     map: RowMap,
-    /// Indices of the recorded values among the mapped values. A time delivered by the source is
-    /// not recorded.
+    /// Indices of the recorded values among the mapped values. If the source delivers a time, the
+    /// time is not recorded.
     kept: Vec<usize>,
     roles: Vec<Role>,
     offsets: Vec<f64>,
@@ -108,7 +108,7 @@ impl Signals {
                 let mut volts = [0.0; AXES];
                 volts.copy_from_slice(&frame[AXES * sensor..AXES * (sensor + 1)]);
                 let forces = calibration.forces(volts);
-                // There are only six forces, so the channels of the next sensor stay as they are.
+                // There are only six forces, so the channels of the next sensor do not change.
                 for (channel, force) in channels[AXES * sensor..].iter_mut().zip(forces) {
                     channel.push(force);
                 }

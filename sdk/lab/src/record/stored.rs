@@ -1,4 +1,4 @@
-//! Determines from the JSON next to a take's recording how to read the recording.
+//! Finds out how to read the recording of a take, from the JSON next to the recording.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -82,7 +82,8 @@ impl KnownTake {
 }
 
 /// Reads the header of a take from the JSON next to its recording; `None` if the file does not
-/// describe a take. A header of another version is [`io::ErrorKind::InvalidData`].
+/// describe a take. For a header of another version, returns the error
+/// [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
     // A longer file is cut off. It is then invalid JSON and does not count as a take.
@@ -94,7 +95,7 @@ pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     header.map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, format!("take: {problem}")))
 }
 
-/// Returns the settings that read the recording of a take.
+/// Returns the settings with which the recording of a take must be read.
 pub(crate) fn settings(recording: &Path, header: &TakeHeader) -> ReadingSettings {
     let (map, rate_hz) = reading(header);
     ReadingSettings {

@@ -85,7 +85,7 @@ impl TrackerRows for TableTracker {
     }
 }
 
-/// Longest line of a tracker, bytes: two numbers and anything else in the line.
+/// Longest line of a tracker, bytes. A line has two numbers, and may contain further text.
 const MOST_LINE_BYTES: usize = 4096;
 /// Largest number of lines that wait to be read. It is a minute at 1 kHz.
 const MOST_LINES: usize = 60_000;
@@ -106,8 +106,8 @@ impl LineTracker {
         let (sender, lines) = sync_channel(MOST_LINES);
         std::thread::spawn(move || {
             for (index, line) in bounded_lines(input, MOST_LINE_BYTES).enumerate() {
-                // The error of a failed read is passed on as a line. It is not a position, so it is
-                // reported as an invalid line.
+                // If reading fails, the text of the error is passed on as a line. This text is not
+                // a position, so it is reported as an invalid line.
                 let line = line.unwrap_or_else(|error| error.to_string());
                 if sender.send((Instant::now(), index + 1, line)).is_err() {
                     return;

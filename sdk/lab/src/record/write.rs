@@ -85,7 +85,7 @@ pub(crate) fn write_signals(
     Ok(TakeFiles { recording, fit })
 }
 
-/// Returns the flags of `htex fit` for facts that the file format itself does not state.
+/// Returns the flags of `htex fit` that state what the file format itself does not state.
 fn flags(header: &TakeHeader) -> Vec<String> {
     let mut flags = Vec::new();
     let (map, rate_hz) = reading(header);
@@ -114,7 +114,7 @@ fn column_map(header: &TakeHeader) -> String {
     map.join(",")
 }
 
-/// Returns a column name from which `htex fit` recognises the role and the unit.
+/// Returns a column name that tells `htex fit` the role and the unit.
 fn column(role: &str, unit: &str, quantity: Quantity) -> String {
     let base = match quantity {
         Quantity::Acceleration => "accel",

@@ -12,10 +12,11 @@ use super::record::{Channel, Record};
 use super::settings::ResponseSettings;
 use crate::error::LabError;
 
-/// The final part of a window, relative to its length, that must be quiet.
+/// The last part of a window must be quiet. This is the length of this part, relative to the
+/// window.
 const END: f64 = 0.05;
-/// Limits for a quiet end (RMS): first relative to the largest output, then relative to the noise
-/// before the trigger.
+/// Limits for the RMS of a quiet end: the first is relative to the largest output, and the second
+/// is relative to the noise before the trigger.
 const QUIET: f64 = 0.01;
 const OVER_NOISE: f64 = 3.0;
 
@@ -72,8 +73,8 @@ pub(crate) fn count_used(
     }
 }
 
-/// Averages the usable hits or windows. Also returns how many hits have a response that outlasts
-/// the window.
+/// Averages the usable hits or windows. Also returns the number of hits whose response outlasts the
+/// window.
 pub(crate) fn average(
     records: &[Record],
     cuts: &[Vec<Cut>],
@@ -100,14 +101,14 @@ pub(crate) fn average(
 }
 
 /// Returns the largest deviation of a channel from rest, over all records. The channel is divided
-/// by it, so that no power overflows or underflows.
+/// by this number, so that no power overflows or underflows.
 pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
     let largest = records.iter().map(|record| Baseline::find(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)
 }
 
 /// Averaged auto spectra and cross spectrum of input and output at each bin (Bendat & Piersol,
-/// section 11.5). A common factor is left out, because only ratios are used.
+/// section 11.5). All spectra lack the same factor, because only their ratios are used.
 #[derive(Debug)]
 pub(crate) struct Spectra {
     fft: RealFft,
@@ -116,7 +117,7 @@ pub(crate) struct Spectra {
     pub(crate) gxx: Vec<f64>,
     /// Auto spectrum of the output.
     pub(crate) gyy: Vec<f64>,
-    /// Cross spectrum: the mean of the conjugate of the input times the output.
+    /// Cross spectrum: the conjugate of the input times the output, averaged.
     pub(crate) gxy: Vec<Complex<f64>>,
 }
 

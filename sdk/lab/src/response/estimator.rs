@@ -68,7 +68,7 @@ impl Bin {
         let unit = (y / x).sqrt();
         let (a, b, c) = (self.gxx / x, self.gyy / y, cross / (x * y).sqrt());
         let root = libm::hypot(b - a, 2.0 * c);
-        // Both forms are mathematically equal. The chosen one adds instead of subtracting, so it
+        // Both forms are mathematically equal. The chosen form adds instead of subtracting, so it
         // loses no digits.
         let slope = if b >= a { (b - a + root) / (2.0 * c) } else { 2.0 * c / (a - b + root) };
         slope * unit
@@ -95,7 +95,7 @@ mod tests {
 
     proptest! {
         /// H1 <= Hv <= H2 for every spectral matrix, whatever the units. Without noise, all three
-        /// are the gain.
+        /// equal the gain.
         #[test]
         fn estimators_are_ordered(
             gxx in 1e-6..1e6_f64, gyy in 1e-6..1e6_f64, coherence in 0.01..1.0_f64, phase in -3.0..3.0_f64,

@@ -9,20 +9,21 @@ use super::record::Channel;
 use super::record::Record;
 use super::settings::{HitSettings, ResponseSettings};
 
-/// If the RMS of a window's drive, relative to the strongest window, is below this value, the
-/// window counts as silent.
+/// A window counts as silent if the RMS of its drive, relative to the strongest window, is below
+/// this value.
 const SILENT: f64 = 0.1;
 
 /// Cuts a continuous drive into windows of `len` samples with half overlap.
 pub(crate) fn windows(record: &Record, len: usize, settings: &ResponseSettings) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
     let overloads = [
-        // A square wave repeats its extreme values, so for the input only a given limit counts.
+        // A square wave repeats its extreme values. Therefore, the input counts as overloaded only
+        // at a limit that the user gave.
         Overloads::find_given(record, Channel::Input, settings.input_limit),
         Overloads::find(record, Channel::Output, settings.output_limit),
     ];
-    // The first start that is too late. It is exclusive, so a record of exactly one window has one
-    // window.
+    // The first start at which a window no longer fits. The range excludes it, so a record with the
+    // length of one window gives one window.
     let last = (input.len() + 1).saturating_sub(len);
     let starts = || (0..last).step_by((len / 2).max(1));
     let rms: Vec<f64> = starts().map(|start| spread(&input[start..start + len])).collect();
@@ -104,7 +105,8 @@ impl Weights {
             Channel::Input => &self.input,
             Channel::Output => &self.output,
         };
-        // Without samples before the trigger, uses the first sample, which is nearly at rest.
+        // If there are no samples before the trigger, the first sample is used, which is nearly at
+        // rest.
         let rest = mean(&values[..self.rest.clamp(1, values.len())]);
         let weighted = values.iter().zip(weights);
         weighted.map(|(value, weight)| weight * (value - rest) / scale).collect()

@@ -7,8 +7,8 @@ use super::pieces::{Cut, Piece, Reason};
 use super::record::{Channel, Record};
 use super::settings::{HitSettings, ResponseSettings};
 
-/// A hit, and a second contact, must exceed the noise by at least this factor. At a sample rate of
-/// 1 GHz, normally distributed noise does so less than once a day.
+/// Hits and second contacts must exceed the noise by at least this factor. At a sample rate of 1
+/// GHz, normally distributed noise exceeds its RMS by this factor less than once a day.
 pub(crate) const ABOVE_NOISE: f64 = 8.0;
 
 /// Finds the hits of a record, with windows of `len` samples. Finds none if the largest input is
@@ -35,8 +35,8 @@ pub(crate) fn hits(
     let mut from = 0;
     while let Some(after) = trigger(&input[from..], rest.level, level) {
         let trigger = from + after;
-        // A hit at the very start has no samples before its trigger, but its window still has the
-        // usual length.
+        // A hit at the very start has too few samples before its trigger, but its window still has
+        // the usual length.
         let start = trigger.saturating_sub(before);
         let samples = start..start + len;
         let inside = start..samples.end.min(input.len());
@@ -47,7 +47,7 @@ pub(crate) fn hits(
             .cut_off()
             .or_else(|| overloads.iter().find_map(|all| all.within(record, &inside)))
             .or_else(|| window.double(rest.level, peak, rise));
-        // Advances by at least one sample, so that the search ends.
+        // The search advances by at least one sample, so that it ends.
         from = inside.end.max(trigger + 1);
         let (file, time_s) = (record.file().to_owned(), record.second(trigger));
         let piece = Piece { file, time_s, peak, thrown_out };
@@ -73,7 +73,7 @@ fn peak(input: &[f64], rest: f64) -> f64 {
 struct Window<'a> {
     record: &'a Record,
     trigger: usize,
-    /// Number of samples before the trigger that the window should have.
+    /// Number of samples that the window should have before the trigger.
     before: usize,
     samples: &'a Range<usize>,
     /// The part of `samples` that lies inside the record.
@@ -101,8 +101,8 @@ impl Window<'_> {
 
 /// Returns the indices of the samples at which contacts begin. A contact begins when the signal has
 /// risen by at least `rise` above its lowest value since the last contact, and is also at least
-/// `rise` above rest. Before that, the signal must have fallen by at least `rise` after the last
-/// contact. `pulse` is the signal relative to its level at rest, with the hit in the positive
+/// `rise` above rest. Between the last contact and a new one, the signal must have fallen by at
+/// least `rise`. `pulse` is the signal relative to its level at rest, with the hit in the positive
 /// direction.
 pub(crate) fn contacts(pulse: impl Iterator<Item = f64>, rise: f64) -> Vec<usize> {
     let mut found = Vec::new();

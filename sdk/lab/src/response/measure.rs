@@ -80,7 +80,7 @@ fn band(
     resolution_hz: f64,
     bins: usize,
 ) -> Result<std::ops::Range<usize>, LabError> {
-    // A bin at an edge of the band belongs to it even if the quotient was rounded.
+    // A bin at an edge of the band belongs to the band even if the quotient was rounded.
     let low = (settings.low_hz / resolution_hz * (1.0 - 1e-12)).ceil() as usize;
     let high = (settings.high_hz / resolution_hz * (1.0 + 1e-12)).floor() as usize;
     let range = low..high.saturating_add(1).min(bins);
@@ -145,7 +145,7 @@ pub struct MeasuredResponse {
     pub pieces: Vec<Piece>,
     /// Frequencies, hertz: multiples of the resolution.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude, in the output's unit per unit of the input; 0 where there is no input.
+    /// Magnitude, in the output's unit per unit of the input. It is 0 at frequencies without input.
     pub magnitude: Vec<f64>,
     /// Phase of the output relative to the input, radians, unwrapped.
     pub phase_rad: Vec<f64>,
@@ -212,8 +212,8 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Finds the peak. Returns `None` if the magnitude is largest at the first or the last
-    /// frequency, or if it is zero next to the largest one.
+    /// Finds the peak. Returns `None` if the largest magnitude is at the first or the last
+    /// frequency, or if a magnitude next to it is zero.
     pub(crate) fn find(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let larger = |best: usize, at: usize| {
             if magnitude[at] > magnitude[best] { at } else { best }
@@ -243,7 +243,7 @@ const FEW: usize = 5;
 /// Coherence below which the response is uncertain.
 const COHERENT: f64 = 0.9;
 /// Two stretches of low coherence are reported as one if their distance, relative to their
-/// frequency, is at most this.
+/// frequency, is at most this number.
 const NEAR: f64 = 0.1;
 
 /// Returns the warnings about a measured response. `outlasting` is the number of hits whose

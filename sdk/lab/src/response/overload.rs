@@ -12,7 +12,7 @@ const IN_A_ROW: usize = 4;
 /// Fraction of the largest deviation that a clipped value must reach. Without this limit, a signal
 /// at rest would count as clipped, because it repeats its lowest value.
 const AWAY: f64 = 0.5;
-/// A sample counts as being at a given limit from this fraction of the limit on.
+/// A sample counts as being at a given limit if it reaches this fraction of the limit.
 const AT_LIMIT: f64 = 0.999;
 
 /// The stretches in which a channel is at its limit, in the order of time.
@@ -73,7 +73,7 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
 fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;
-    // The added end closes a run that lasts until the last sample.
+    // The added element ends a run that lasts until the last sample.
     for (at, value) in values.iter().map(|value| Some(*value)).chain([None]).enumerate() {
         match (start, value.is_some_and(&is_so)) {
             (None, true) => start = Some(at),
@@ -97,7 +97,7 @@ const NORMAL: f64 = 1.482_602_218_505_602;
 pub(crate) struct Baseline {
     /// Level at rest: the median.
     pub(crate) level: f64,
-    /// RMS of the noise, from the median absolute deviation. Hits do not influence it as long as
+    /// RMS of the noise, from the median absolute deviation. Hits do not influence this value if
     /// they fill less than half of the recording.
     pub(crate) noise: f64,
     /// Largest distance from the level.

@@ -75,8 +75,8 @@ fn points(measured: &MeasuredResponse, values: impl Iterator<Item = f64>) -> Vec
     measured.frequency_hz.iter().copied().zip(values).collect()
 }
 
-/// Returns decibels. Where there is no response the result is not finite, which leaves a gap in the
-/// plot.
+/// Returns decibels. For a magnitude of 0 the result is not finite, so the plot has a gap at this
+/// frequency.
 fn decibels(magnitude: f64) -> f64 {
     20.0 * libm::log10(magnitude)
 }

@@ -1,7 +1,7 @@
 //! The pieces of recordings: hits or windows, which are averaged or thrown out.
 //!
 //! A response is an average over pieces. Each piece has a time and, if it is thrown out, a reason.
-//! So a person who reads the result can judge the measurement without its samples.
+//! With this information, a person can judge the measurement from the result, without the samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -29,7 +29,7 @@ pub struct Piece {
 #[serde(rename_all = "snake_case", tag = "reason")]
 #[non_exhaustive]
 pub enum Reason {
-    /// The hammer touched again before the window ended.
+    /// The hammer touched the object a second time before the window ended.
     DoubleHit {
         /// Time of the second contact in the file, seconds.
         second_s: f64,
@@ -86,7 +86,8 @@ impl Piece {
 /// A piece with its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cut {
-    /// Indices of the window's samples. They extend beyond the recording if the window is cut off.
+    /// Indices of the window's samples. The range extends beyond the recording if the window is cut
+    /// off.
     pub(crate) samples: Range<usize>,
     /// Index of the trigger's sample, or of the first sample of a window of a continuous drive.
     pub(crate) trigger: usize,

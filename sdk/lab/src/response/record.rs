@@ -177,7 +177,7 @@ pub fn column_map(
     ColumnMap::new(entries).map_err(|error| LabError::Columns { problem: problem_of(error) })
 }
 
-/// Uses a scale of 1 if none is given, because the unit of a column does not matter here.
+/// If no scale is given, uses a scale of 1, because the unit of a column does not matter here.
 fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, LabError> {
     let mut entry = MapEntry::parse(role, text)
         .map_err(|error| LabError::Column { channel, problem: problem_of(error) })?;
@@ -185,7 +185,7 @@ fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, LabError>
     Ok(entry)
 }
 
-/// Returns what is wrong with a map, without advice about maps.
+/// Returns what is wrong with a map, without the general advice about maps.
 fn problem_of(error: ReadError) -> String {
     match error.problem {
         ReadProblem::Map(problem) => problem,

@@ -88,19 +88,19 @@ pub(crate) struct HitSettings {
     /// Length of the part of the window before the trigger, seconds. The mean of each channel over
     /// this part is removed.
     pub(crate) pre_trigger_s: f64,
-    /// Level at which a hit starts, relative to the largest input of its recording. At least 8
-    /// times the noise is used.
+    /// Level at which a hit starts, relative to the largest input of its recording. This level is
+    /// raised to 8 times the noise if it is lower.
     pub(crate) trigger: f64,
     /// A hit counts as a double hit if a second contact in the window has at least this size,
-    /// relative to the hit. At least 8 times the noise is used.
+    /// relative to the hit. This size is raised to 8 times the noise if it is smaller.
     pub(crate) double: f64,
     /// Force window, seconds. The input is kept until this time after the trigger. It then fades to
     /// zero over a quarter of this time (half a cosine). This removes the noise of the input
     /// between hits.
     pub(crate) force_window_s: Option<f64>,
     /// Exponential window: time constant, seconds. After the trigger, both channels are multiplied
-    /// by `exp(-t / this)`. This makes responses end that would outlast the window. It raises their
-    /// damping by the inverse of the time constant, in 1/s.
+    /// by `exp(-t / this)`. With this, a response that would outlast the window ends within the
+    /// window. The damping of responses rises by the inverse of the time constant, in 1/s.
     pub(crate) exponential_s: Option<f64>,
 }
 

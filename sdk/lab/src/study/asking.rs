@@ -14,8 +14,8 @@ use crate::study::stimulus::Stimulus;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum View {
-    /// The participant must press a key to begin the next trial, or to begin the matching of the
-    /// next texture.
+    /// The participant must press a key to begin the next trial, or the matching of the next
+    /// texture.
     Ready {
         /// The phase that begins.
         phase: Phase,
@@ -50,12 +50,12 @@ pub enum View {
     Done,
 }
 
-/// Time after a question or a matching is shown during which keys are ignored. A press in this time
-/// is the second press of the key that answered the previous view.
+/// After a question or a matching is shown, keys are ignored for this time. A press in this time is
+/// the second press of the key that answered the previous view.
 const GUARD: Duration = Duration::from_millis(300);
-/// Time during which keys are ignored at the start of a trial and at the end of a rest. Both use
-/// the same key, and a double press, whose second press comes within 0.5 s, must do only one of
-/// them.
+/// At the start of a trial and at the end of a rest, keys are ignored for this time. The same key
+/// ends a rest and begins a trial. If the participant presses the key twice within 0.5 s, only one
+/// of the two must happen.
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
@@ -101,7 +101,7 @@ pub trait Clock {
     /// Waits for this time. A simulated clock does not wait: it moves forward by this time at once.
     fn pass(&mut self, time: Duration);
 
-    /// Advances a simulated clock by the length of something that was played.
+    /// Advances a simulated clock by the duration of a stimulus that was played.
     fn played(&mut self, time: Duration);
 
     /// Returns date and time in UTC, in the format of [`crate::study::utc`], or `None` for a
@@ -142,9 +142,9 @@ pub trait Rig {
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Playback, Self::Error>;
 
-    /// Returns values of the last [`Self::play`] that ended with an error: the drive of a display
-    /// (volts), and the levels that were written to the device. Returns `None` if the device was
-    /// not opened.
+    /// Returns two values of the last [`Self::play`] that ended with an error: the drive of a
+    /// display (volts), and the levels of the samples that were written to the device. Returns
+    /// `None` if the device was not opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
     /// Returns whether an error of [`Self::play`] means that the device ran out of samples. Playing

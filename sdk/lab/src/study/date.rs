@@ -2,7 +2,7 @@
 
 /// Milliseconds of a day.
 const DAY_MS: u64 = 86_400_000;
-/// Days of 400 years, after which the calendar repeats.
+/// Number of days in 400 years. The calendar repeats after this period.
 const ERA_DAYS: u64 = 146_097;
 /// Days from 0000-03-01 to 1970-01-01.
 const TO_1970: u64 = 719_468;

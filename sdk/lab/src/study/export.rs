@@ -28,7 +28,7 @@ const COLUMNS: [&str; 11] = [
 /// Ratings of all participants in a folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// The table as CSV. The rows of one participant follow each other, in the order of the trials.
+    /// The table as CSV. The rows of each participant are together, in the order of the trials.
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
@@ -48,7 +48,7 @@ pub struct Export {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
-    /// Average these trials with the others, and report their number.
+    /// Include these trials in the averages, and report their number.
     #[default]
     Keep,
     /// Leave these trials out, and report their number.
@@ -78,7 +78,8 @@ pub(crate) struct Answers {
     pub(crate) answers: Vec<Answer>,
 }
 
-/// Reads the answers of all participants in a folder. All must belong to one version of a study.
+/// Reads the answers of all participants in a folder. All answers must belong to the same version
+/// of a study.
 pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, LabError> {
     let mut sessions = Vec::new();
     for file in files(folder)? {
@@ -214,7 +215,7 @@ impl Answers {
             let felt = answer.felt.as_ref()?;
             Some((answer.number, felt.is_off_target()?))
         });
-        // A trial has an answer for each attribute, but counts once.
+        // A trial has one answer for each attribute, but counts only once.
         let recorded: BTreeSet<(u32, bool)> = recorded.collect();
         (recorded.iter().filter(|(_, off)| *off).count(), recorded.len())
     }

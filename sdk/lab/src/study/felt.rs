@@ -5,7 +5,7 @@
 //! earlier trials.
 //!
 //! A session that is killed and then continued writes the same files as a session without
-//! interruption. This requires that the source delivers the same samples both times.
+//! interruption. This requires that the source delivers the same samples in both cases.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,8 +32,8 @@ use crate::study::stimulus::Stimulus;
 
 /// Folder for a participant's recordings.
 const FOLDER: &str = "felt";
-/// Largest allowed relative difference of the motion from the study's motion. Each recording is
-/// judged by it.
+/// Each recording is judged by this number: the largest allowed relative difference between its
+/// motion and the study's motion.
 const TOLERANCE: f64 = 0.1;
 
 pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Input>, DeviceError>>;
@@ -59,7 +59,7 @@ pub struct FeltSetup {
     pub tool: String,
     /// Whether a recording begins with the first sample of the source. If false, the recording
     /// begins when the first played sample reaches the display. Set this field to true for trials
-    /// that are not played in real time, because they have no common clock with the source.
+    /// that are not played in real time, because such trials and the source have no common clock.
     pub is_fast: bool,
 }
 
@@ -134,7 +134,7 @@ impl Felt {
     /// Returns an error if the source cannot be opened or started, or if its sample rate has
     /// changed.
     pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), LabError> {
-        // A recording that was not finished may still run.
+        // If an earlier recording was not finished, it may still be running.
         self.abort();
         let mut source = (self.open)()?;
         if source.stream().rate_hz != self.rate_hz {
@@ -152,7 +152,7 @@ impl Felt {
         }
         let header = self.header(name, seconds, &inputs);
         if let Err(error) = source.start() {
-            // Put back, so that the next trial can try again.
+            // The inputs are put back, so that the next trial can try again.
             self.inputs = Some(inputs);
             return Err(error.into());
         }
@@ -228,7 +228,8 @@ impl Felt {
         stimulus: &Stimulus,
         played: &Playback,
     ) -> Result<Option<FeltFile>, LabError> {
-        // `end` is called even if nothing is recorded, because it joins a thread that may run.
+        // `end` is called even if nothing is recorded, because it joins a thread that may still be
+        // running.
         let (Some(name), Some(data)) = (&stimulus.felt, self.end()) else {
             return Ok(None);
         };
@@ -287,8 +288,8 @@ impl Drop for Felt {
     }
 }
 
-/// Returns a path relative to the folder of answers, if it lies in this folder. Any other text is
-/// returned unchanged.
+/// If the text is a path in the folder of answers, returns the path relative to this folder. Any
+/// other text is returned unchanged.
 fn within(folder: &Path, text: &str) -> String {
     let inner = Path::new(text).strip_prefix(folder);
     inner.map_or_else(|_| text.to_owned(), |path| path.display().to_string())
@@ -316,8 +317,8 @@ fn read_take(
     let frames = data.header.frames();
     let mut begin = None;
     while data.frames() < frames && !shared.stop.load(Ordering::Acquire) {
-        // The lead is looked up before the block is read, so that this block is the first of the
-        // recording.
+        // The lead is looked up before the block is read, so that the recording can begin with this
+        // block.
         if let (None, Some(lead_s)) = (begin, shared.lead_s.get()) {
             begin = Some(reader.now_s() + lead_s);
         }
@@ -345,7 +346,7 @@ fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
     ((begin_s - reader.now_s()) * data.header.rate_hz).round().max(0.0) as usize
 }
 
-/// If the error states that the source ended, adds how much was recorded until then.
+/// If the error states that the source ended, adds to it how much was recorded until then.
 fn after(error: LabError, data: &TakeData) -> LabError {
     match error {
         LabError::Ended { seconds, kept, .. } => {
@@ -362,6 +363,6 @@ fn remove_unfinished(own: &OwnFolder, inside: &Path) -> std::io::Result<()> {
     for name in own.files(inside)?.into_iter().filter(left) {
         own.remove(&inside.join(name))?;
     }
-    // If the last file was removed, the folder was removed with it, so it is created again.
+    // Removing the last file also removes the folder, so the folder is created again.
     own.make_folder(inside).map(drop)
 }

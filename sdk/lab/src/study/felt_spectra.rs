@@ -19,7 +19,7 @@ use crate::study::export::{OffTarget, sessions_of};
 use crate::study::lines::FeltFile;
 use crate::study::log::file_hash;
 
-/// Text in the columns participant and model for the lines of real textures.
+/// In the lines of real textures, the columns participant and model contain this text.
 const RECORDED: &str = "recorded";
 
 /// The recorded spectrum of a real texture.
@@ -127,7 +127,8 @@ pub fn felt_spectra(
     let (mut recordings, mut off, mut warnings) = (0, 0, Vec::new());
     for session in sessions_of(folder)? {
         let participant = &session.header.participant;
-        // A trial with several questions has one recording, which its last answer names.
+        // A trial with several questions has only one recording. The last answer of the trial names
+        // it.
         let mut conditions: BTreeMap<(String, String), BTreeMap<u32, FeltFile>> = BTreeMap::new();
         for answer in session.answers {
             let Some(felt) = answer.felt else { continue };
@@ -204,7 +205,7 @@ fn part(
         );
         LabError::from(FileError::content(&file, problem))
     };
-    // The name comes from the answers, and they may come from somebody else.
+    // The name comes from the answers, which may come from another person.
     if felt.file.split('/').any(|part| matches!(part, "" | "." | "..")) {
         return Err(other("its name leaves the folder of answers"));
     }

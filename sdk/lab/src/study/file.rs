@@ -11,7 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Version of the format that this crate reads.
 pub const VERSION: &str = "1.0";
 
-/// A study: who feels which textures in which order, and which questions they answer.
+/// A study: which participants feel which textures, in which order, and which questions they
+/// answer.
 ///
 /// ```
 /// use htex_base::finding::Findings;
@@ -72,7 +73,7 @@ pub struct Study {
     /// The phases of a session. Their order is fixed.
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
-    /// Level at which each texture starts in the training and in the gain matching, decibels
+    /// In the training and in the gain matching, each texture starts at this level, decibels
     /// relative to the maximum. From this level, the participant raises the level with key presses
     /// until the texture can be felt. The level never rises without a key press.
     #[serde(default = "start")]
@@ -94,8 +95,8 @@ pub struct Study {
     /// Rests during the testing. If this key is absent, there are no rests.
     #[serde(default)]
     pub rests: Option<Rests>,
-    /// White noise in headphones that masks the sound of a texture while it is felt. The web page
-    /// of the study plays the noise. If this key is absent, there is no noise.
+    /// White noise in headphones. It masks the sound that a texture makes while it is felt. The web
+    /// page of the study plays the noise. If this key is absent, there is no noise.
     #[serde(default)]
     pub masking_noise: Option<MaskingNoise>,
     /// The motion of the finger, as in a scene: constant, a trace, or `live`.
@@ -202,7 +203,7 @@ pub struct Matching {
     #[serde(default = "four_db")]
     #[schemars(range(min = 0.01, max = 40))]
     pub large_step_db: f64,
-    /// Lowest gain, decibels relative to the maximum.
+    /// Lowest gain that can be set, decibels relative to the maximum.
     #[serde(default = "lowest")]
     #[schemars(range(min = -120, max = -1))]
     pub lowest_db: f64,
@@ -291,7 +292,7 @@ pub struct MaskingNoise {
     pub level_dbfs: f64,
 }
 
-/// Written by hand, because an untagged enum of serde would lose the place of an error.
+/// This is written by hand, because with an untagged enum, serde would lose the place of an error.
 impl<'de> Deserialize<'de> for Participants {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(CountOrNames)
@@ -308,7 +309,7 @@ impl<'de> Visitor<'de> for CountOrNames {
     }
 
     fn visit_u64<E: serde::de::Error>(self, count: u64) -> Result<Participants, E> {
-        // A number that is too large for `u32` becomes the largest one, which is still more than
+        // A number that is too large for `u32` becomes the largest `u32`, which is also more than
         // allowed.
         Ok(Participants::Count(u32::try_from(count).unwrap_or(u32::MAX)))
     }

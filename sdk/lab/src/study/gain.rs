@@ -44,8 +44,8 @@ pub struct Match {
     settings: Matching,
     gain_db: f64,
     stage: Stage,
-    /// Whether the level at which the participant feels the texture is already the result, without
-    /// a matching.
+    /// Whether the result is the level at which the participant feels the texture. In this case
+    /// there is no matching.
     ends_when_felt: bool,
     /// Gains at which a staircase turned.
     reversals: Vec<f64>,
@@ -76,8 +76,8 @@ impl Match {
         }
     }
 
-    /// Prepares a rise of the level from `start_db`, without a matching. The result is the level at
-    /// which the participant feels the texture. The step sizes come from `settings`.
+    /// Prepares a search without a matching: the level only rises from `start_db`. The result is
+    /// the level at which the participant feels the texture. The step sizes come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }
@@ -156,7 +156,8 @@ impl Match {
     }
 
     fn change(&mut self, by_db: f64) {
-        // If the start is below the lowest gain, it stays there until the participant raises it.
+        // If the gain starts below the lowest gain, it stays below it until the participant raises
+        // it.
         let lowest = self.settings.lowest_db.min(self.gain_db);
         self.gain_db = (self.gain_db + by_db).clamp(lowest, 0.0);
     }
@@ -176,7 +177,8 @@ pub(crate) fn takes(method: GainMethod, is_rising: bool, key: GainKey) -> bool {
 mod tests {
     use super::*;
 
-    /// Every method finds the gain that the participant wants within one step.
+    /// With every method, the gain that is found differs by at most one step from the gain that the
+    /// participant wants.
     #[test]
     fn every_method_finds_the_gain_that_is_wanted() {
         use GainMethod::{Adjustment, Descending, Staircase};
@@ -212,8 +214,8 @@ mod tests {
         }
     }
 
-    /// No method plays more than its start level before the participant asks for more, and a
-    /// matching starts at the level at which the texture was felt.
+    /// No method exceeds its start level before the participant asks for a higher level. A matching
+    /// starts at the level at which the texture was felt.
     #[test]
     fn every_method_starts_weak_and_goes_on_from_the_level_that_is_felt() {
         use GainMethod::{Adjustment, Descending, Staircase};

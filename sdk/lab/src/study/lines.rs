@@ -19,8 +19,8 @@ pub(crate) const VERSION: &str = "1.0";
 pub enum Line {
     /// The first line of the file.
     Header(Box<Header>),
-    /// The start of a session. A session with a simulated clock does not write this line, because
-    /// this clock has no date.
+    /// The start of a session. A session with a simulated clock does not write this line, because a
+    /// simulated clock has no date.
     Session(SessionStart),
     /// A key press while the level of a texture rises, in the training or in the gain matching. The
     /// level rises until the participant can feel the texture.
@@ -106,10 +106,9 @@ pub struct DeviceUsed {
     /// Profile of the device; empty if none is used.
     pub profile: String,
     /// All settings of the device, such as the gain of an amplifier. They include the settings from
-    /// the profile and the default values. Two kinds of settings are left out. The first kind
-    /// consists of the names of the files to which the device writes the samples of a trial. The
-    /// second kind is `buffer_ms`, if the motion is not live. In this case, a participant cannot
-    /// feel the length of the buffer.
+    /// the profile and the default values. Two kinds of settings are left out: the names of the
+    /// files to which the device writes the samples of a trial, and `buffer_ms` if the motion is
+    /// not live. If the motion is not live, a participant cannot feel the length of the buffer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest absolute value that the device accepts, in the device's unit (volts for a display).
@@ -123,7 +122,7 @@ pub struct DeviceUsed {
 }
 
 impl DeviceUsed {
-    /// Returns how the device `now` differs from this earlier one, as phrases.
+    /// Compares the device `now` with this earlier device, and returns the differences as phrases.
     pub(crate) fn differences(&self, now: &Self) -> Vec<String> {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
         let values = |of: &Self| -> BTreeMap<String, String> {
@@ -243,8 +242,8 @@ pub struct Answer {
     /// of htex wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How many times the trial was stopped before its end, for any reason: the number of lines of
-    /// the kind `stopped` directly before this line.
+    /// How many times the trial was stopped before its end, for any reason. This is the number of
+    /// lines of the kind `stopped` directly before this line.
     #[serde(default)]
     pub stops: u32,
     /// How many earlier attempts of the trial failed because the device ran out of samples.
@@ -332,8 +331,8 @@ pub struct OutputLevels {
     pub peak: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// DC component: the largest absolute value of the mean over any window of 100 ms. The time
-    /// before the start counts as silence.
+    /// DC component: the mean is computed over every window of 100 ms, and this is the largest
+    /// absolute value of these means. The time before the start counts as silence.
     pub direct: f64,
     /// Length, seconds.
     pub duration_s: f64,

@@ -24,13 +24,13 @@ pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
 pub struct Log {
     path: PathBuf,
     file: File,
-    /// Total length of all whole lines, bytes, if a crash left an incomplete line after them.
+    /// If a crash left an incomplete last line, the total length of all complete lines, bytes.
     whole: Option<u64>,
 }
 
 impl Log {
-    /// Opens the file of a session's answers, or creates the file. Also returns the lines after the
-    /// header.
+    /// Opens the file of a session's answers, or creates it if it does not exist. Also returns the
+    /// lines after the header.
     ///
     /// Opening does not change an existing file. If a crash left the last line incomplete, the
     /// first [`Self::append`] removes this line. Opening does not remove the line, because the
@@ -87,7 +87,7 @@ impl Log {
         Ok(synced.writing(&self.path)?)
     }
 
-    /// Removes the incomplete line after the whole lines.
+    /// Removes the incomplete line at the end of the file.
     fn whole_lines(&mut self) -> io::Result<()> {
         if let Some(whole) = self.whole {
             self.file.set_len(whole)?;
@@ -102,8 +102,8 @@ impl Log {
     }
 }
 
-/// Reads the header and the lines of a file of answers. Leaves out an incomplete last line, which a
-/// running or killed session may leave.
+/// Reads the header and the lines of a file of answers. Ignores an incomplete last line: a session
+/// that is running or was killed may have written it.
 pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), LabError> {
     let bytes = std::fs::read(path).reading(path)?;
     let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
@@ -120,8 +120,8 @@ fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
     Ok((OwnFolder::private(folder.path()), name))
 }
 
-/// Creates the file with its header under a temporary name, and then renames it. So a file never
-/// lacks a header. Returns when the file is on disk.
+/// Creates the file with its header under a temporary name, and then renames it. Therefore, every
+/// file has a header. Returns when the file is on disk.
 fn begin(path: &Path, header: &Header) -> Result<(), LabError> {
     let begun = place(path).and_then(|(folder, name)| {
         let text = text(&Line::Header(Box::new(header.clone())))?;
@@ -190,7 +190,8 @@ fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String 
     }
 }
 
-/// Returns a file whose hash differs between two headers, or that only one of the headers has.
+/// Returns a file whose hashes in the two headers differ, or that occurs in only one of the
+/// headers.
 pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a str> {
     let mut names = begun.files.keys().chain(now.files.keys());
     let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);

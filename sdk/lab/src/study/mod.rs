@@ -16,9 +16,9 @@
 //! 1. `read`: reads `study.toml` and checks the files that `study.toml` names. Problems become
 //!    findings. The rules for scenes also apply to a study's motion, device and assets.
 //! 2. `plan`: computes the order of trials for every participant, using only `study.toml`.
-//! 3. `session`: takes one participant through the plan. One function updates the `progress`, both
-//!    for lines read from the file and for lines just recorded. `log` appends a line to the file
-//!    and flushes the line to disk.
+//! 3. `session`: takes one participant through the plan. The same function updates the `progress`
+//!    for lines that were read from the file and for lines that were just recorded. `log` appends a
+//!    line to the file and flushes the line to disk.
 //! 4. `run`: plays trials, shows views and asks questions, through three traits: a rig (renderer
 //!    and device), an asker (terminal or page) and a clock. `felt` records the signal of a sensor
 //!    while a trial plays. The code that reads the signal and writes the recording is the same as

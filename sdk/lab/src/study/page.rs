@@ -1,8 +1,8 @@
 //! The web page through which the participant answers during a session ([`crate::page`]).
 //!
-//! Each view has a number, and an answer contains the number of the view that it answers. Therefore
-//! a second press of a key does not count: the view with its number has already been answered. A
-//! press for a view that is no longer shown does not count either.
+//! Each view has a number, and an answer contains the number of the view that it answers.
+//! Therefore, a second press of a key does not count, because the view with this number has already
+//! been answered. A press for a view that is no longer shown does not count either.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -16,8 +16,8 @@ use crate::page::{Content, LocalPage};
 use crate::study::asking::{Asker, Key, View};
 use crate::study::gain::{GainKey, takes};
 
-/// If a page has not reported its finger for this long, it may be closed. Its finger then counts as
-/// lifted.
+/// If a page has not reported the finger for this time, the page may be closed. The finger then
+/// counts as lifted.
 const SILENT: Duration = Duration::from_millis(300);
 
 /// Options of a session's page.
@@ -117,7 +117,7 @@ impl Asker for Page {
 impl Drop for Page {
     fn drop(&mut self) {
         self.served.wait_for_end(|| {
-            // Otherwise the page would stay at the previous view, and never show the end.
+            // Without this wait, the page would stay at the previous view and never show the end.
             let state = self.asked.lock();
             state.seen == state.step
         });
@@ -198,7 +198,7 @@ impl State {
         })
     }
 
-    /// Accepts a key if it is the first one for the current view.
+    /// Accepts a key only if it is the first key that answers the current view.
     fn press(&mut self, body: &Value) {
         let step = body.get("step").and_then(Value::as_u64);
         let name = body.get("key").and_then(Value::as_str).unwrap_or_default();
@@ -246,8 +246,8 @@ mod tests {
     use super::*;
     use crate::study::file::Phase;
 
-    /// A double press, whose second press comes 0.15 to 0.45 s after the first, ends the rest and
-    /// does not begin a trial.
+    /// If a key is pressed twice, 0.15 to 0.45 s apart, the first press ends the rest, and the
+    /// second press does not begin a trial.
     #[test]
     fn a_double_press_at_a_rest_begins_no_trial() {
         let mut state = State::new(PageOptions::default());

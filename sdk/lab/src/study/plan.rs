@@ -74,8 +74,8 @@ impl ParticipantPlan {
     }
 }
 
-/// Draws practice trials at random. No condition occurs twice before every condition has occurred
-/// once.
+/// Draws practice trials at random. A condition is repeated only after every condition has
+/// occurred.
 fn training(study: &Study, name: &str) -> Vec<Trial> {
     if !study.has(Phase::Training) {
         return Vec::new();
@@ -116,8 +116,8 @@ fn trials(study: &Study, order: &[Condition]) -> Vec<Trial> {
     order.iter().enumerate().map(trial).collect()
 }
 
-/// A texture in a model, both as indices. The index after the last model stands for the hidden
-/// reference.
+/// A texture and the model that plays it, both as indices. The index after the last model stands
+/// for the hidden reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Condition {
     pub(crate) texture: usize,
@@ -171,9 +171,9 @@ fn by_texture(all: &[Condition], study: &Study, dice: &mut Dice) -> Vec<Conditio
     trials
 }
 
-/// Returns a participant's rows of a square, one for each repetition. The participants take the
-/// rows one after another. The assignment of conditions to symbols and the order of the rows are
-/// shuffled once for the whole study.
+/// Returns a participant's rows of a square, one for each repetition. The first participant gets
+/// the first rows, the second participant the next rows, and so on. The assignment of conditions to
+/// symbols and the order of the rows are shuffled once for the whole study.
 fn rows(
     study: &Study,
     all: &[Condition],
@@ -191,20 +191,21 @@ fn rows(
 }
 
 /// Returns a Latin square: n rows of n symbols, with each symbol once in each row and in each
-/// column. It is a cyclic square whose columns are permuted by random numbers, always in the same
-/// way. In a cyclic square itself, each symbol would always follow the same one. `rows` shuffles
-/// the rows.
+/// column. It is a cyclic square whose columns are permuted at random, but always in the same way.
+/// Without the permutation, each symbol would always follow the same symbol. `rows` shuffles the
+/// rows.
 fn latin(count: usize) -> Vec<Vec<usize>> {
     let columns = Dice::new(count as u64, &["columns"]).permutation(count);
     let row = |row| columns.iter().map(|at| (row + at) % count).collect();
     (0..count).map(row).collect()
 }
 
-/// Returns a Williams square: n rows for an even number n of symbols, 2n rows for an odd number.
+/// Returns a Williams square of n symbols. It has n rows if n is even, and 2n rows if n is odd.
 /// Each ordered pair of different symbols is adjacent equally often (Williams 1949, "Experimental
 /// designs balanced for the estimation of residual effects of treatments").
 fn williams(count: usize) -> Vec<Vec<usize>> {
-    // 0, 1, n-1, 2, n-2, …: all differences between neighbours are different.
+    // The first row is 0, 1, n-1, 2, n-2, …, because all differences between its neighbours are
+    // different.
     let first: Vec<usize> = (0..count)
         .map(|at| match at {
             0 => 0,
@@ -214,8 +215,8 @@ fn williams(count: usize) -> Vec<Vec<usize>> {
         .collect();
     let row = |add: usize| first.iter().map(|at| (at + add) % count).collect();
     let mut rows: Vec<Vec<usize>> = (0..count).map(row).collect();
-    // For an odd number, the rows alone do not balance which symbol follows which. Their mirror
-    // images complete the balance.
+    // For an odd number of symbols, these rows alone do not balance which symbol follows which.
+    // Their mirror images complete the balance.
     if count % 2 == 1 {
         let mirrored: Vec<Vec<usize>> =
             rows.iter().map(|row| row.iter().rev().copied().collect()).collect();

@@ -1,8 +1,8 @@
 //! Computes the progress of a session from the session's plan and from the lines in its file of
 //! answers.
 //!
-//! The plan and the progress are not stored but computed from the files. So even after a session
-//! was killed, the plan and the progress agree with the file of answers.
+//! The plan and the progress are not stored but computed from the files. Therefore, even after a
+//! session was killed, the plan and the progress agree with the file of answers.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -26,7 +26,7 @@ pub enum Step {
     Match {
         phase: Phase,
         texture: String,
-        /// The model in which it plays.
+        /// The model that plays the texture.
         model: String,
         /// The matching so far.
         matching: Match,
@@ -40,8 +40,8 @@ pub enum Step {
     Done,
 }
 
-/// A session's progress. The same function applies lines that were read and lines that are
-/// recorded.
+/// A session's progress. The same function applies lines that were read from the file and lines
+/// that are recorded now.
 #[derive(Debug)]
 pub(crate) struct Progress {
     training: usize,
@@ -62,7 +62,7 @@ struct Level {
     texture: String,
     model: String,
     matching: Match,
-    /// The RMS that corresponds to the drive at this level, once the level is found.
+    /// After the level is found, the RMS that corresponds to the drive at this level.
     reference_rms: f64,
 }
 
@@ -143,7 +143,7 @@ impl Progress {
     /// Applies a line.
     ///
     /// # Errors
-    /// The reason why this line cannot come next.
+    /// Returns the reason if this line cannot come next.
     pub(crate) fn apply(
         &mut self,
         study: &Study,
@@ -172,8 +172,7 @@ impl Progress {
                 stops(&step, stopped)?;
                 self.stops += 1;
                 self.last_ms = line.at_ms();
-                // Returns early, because the end of this function would set the number of stops to
-                // 0.
+                // The function returns here, because its end would set the number of stops to 0.
                 return Ok(());
             }
             (Step::Rest { after, .. }, Line::Rest { after: is, .. }) if after == *is => {
@@ -218,10 +217,10 @@ impl Level {
         }
     }
 
-    /// Applies a key. The level afterwards must be `gain_db`. Otherwise the line was written under
-    /// other rules, and it is unknown what was felt.
+    /// Applies a key. After the key, the level must be `gain_db`. Otherwise, the line was written
+    /// under other rules, and it is not known what the participant felt.
     fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
-        // Works on a copy, so that a line that does not fit changes nothing.
+        // The key is applied to a copy, so that an invalid line changes nothing.
         let mut pressed = self.matching.clone();
         if !pressed.press(key) {
             return Err(format!("this key for {} does not come next", self.texture));
@@ -239,7 +238,7 @@ impl Level {
     }
 }
 
-/// Returns each texture of the training, in the model of its first trial.
+/// Returns each texture of the training, with the model that plays it in its first trial.
 fn rises(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
     for trial in &plan.training {
@@ -265,7 +264,7 @@ fn gains(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
     plan.gain.iter().map(level).collect()
 }
 
-/// Checks that the line stops what currently plays.
+/// Checks that the stimulus that the line stops is the current one.
 fn stops(step: &Step, line: &Stop) -> Result<(), String> {
     let is_this = match step {
         Step::Rate(phase, trial, _) => {

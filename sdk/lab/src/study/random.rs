@@ -1,4 +1,4 @@
-//! Random numbers of a study. Each purpose has a separate generator, so that the numbers for one
+//! Random numbers of a study. Each purpose has its own generator. Therefore, the numbers for one
 //! purpose do not depend on how many numbers other purposes use.
 
 use rand_core::{Rng, SeedableRng};
@@ -29,7 +29,7 @@ impl Dice {
 
     /// Returns a number below `count`, each with the same probability; 0 if `count` is 0.
     fn below(&mut self, count: u64) -> u64 {
-        // Numbers in the last, incomplete run of `count` are drawn again. They would favour small
+        // Numbers above the largest multiple of `count` are drawn again. They would favour small
         // remainders.
         let most = u64::MAX - u64::MAX % count.max(1);
         loop {

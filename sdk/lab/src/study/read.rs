@@ -27,7 +27,7 @@ const DOCUMENT: Document = Document {
     minor: 0,
     rules: DocumentRules {
         too_deep: rule::STUDY_TOO_DEEP,
-        // A study has few bytes, see `MOST_BYTES`.
+        // This limit is not needed, because `MOST_BYTES` limits a study to few bytes.
         too_large: None,
         syntax: rule::STUDY_SYNTAX,
         wrong_type: rule::STUDY_TYPE,
@@ -52,7 +52,7 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
         findings.add(rule::STUDY_VERSION_MISSING, "", message.to_owned());
         return None;
     }
-    // Converted to JSON, so that the same code checks studies and scenes.
+    // The study is converted to JSON, so that the same code checks studies and scenes.
     let json = serde_json::to_vec(&value).ok()?;
     let opened = DOCUMENT.open(&json, MOST_DEPTH, usize::MAX, findings)?;
     if opened.newer {
@@ -92,8 +92,8 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
 }
 
 /// Checks the files, motion and device of a study by the rules for scenes. To check the files,
-/// opens each texture with each model, in the same way as in the trials. `path` is the study file.
-/// `device` replaces settings of the study's own device; the default value changes nothing.
+/// opens each texture with each model as in the trials. `path` is the study file. `device` replaces
+/// settings of the study's own device; the default value changes nothing.
 pub fn check_files(
     study: &Study,
     path: &Path,
@@ -107,7 +107,7 @@ pub fn check_files(
             let found = match Scene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
                 Err(SceneError::Invalid { findings }) => findings,
-                // The scene is in memory, so no file can fail to be read.
+                // The scene is in memory, so reading it as a file cannot fail.
                 Err(_) => Vec::new(),
             };
             for mut finding in found {
@@ -172,7 +172,7 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
     check_numbers(study, findings);
     check_matching(&study.gain, findings);
     let scale = &study.scale;
-    // Participants answer with a single digit key.
+    // Participants answer by pressing one digit key.
     let sound = scale.min < scale.max && scale.max <= 9;
     findings.require(sound, rule::STUDY_SCALE_INVALID, "/scale", || {
         let (min, max) = (scale.min, scale.max);
@@ -233,7 +233,7 @@ fn check_models(study: &Study, findings: &mut Findings) {
         study.hidden_reference.iter().map(|model| ("/hidden_reference".to_owned(), model));
     let gain = [("/gain/model".to_owned(), &study.gain.model)];
     for (pointer, model) in named.chain(reference).chain(gain) {
-        // With `auto` the planner would choose the model, so two conditions could have the same
+        // With `auto`, the planner would choose the model, and two conditions could get the same
         // model.
         findings.require(model != "auto", rule, pointer, || {
             "auto is no model of a study; name one".to_owned()

@@ -15,9 +15,9 @@ use crate::study::stimulus::Stimulus;
 
 /// Time between two checks for keys while nothing plays.
 const LOOK: Duration = Duration::from_millis(5);
-/// How many times a stimulus is played again after the device ran out of samples. If this happens
-/// because another program takes the processor for a moment, it seldom happens three times in a
-/// row. With a buffer that is too small, it happens every time.
+/// How many times a stimulus is played again after the device ran out of samples. If the cause is
+/// another program that takes the processor for a moment, the device seldom runs out of samples
+/// three times in a row. If the cause is a buffer that is too small, it happens every time.
 const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
@@ -80,8 +80,8 @@ struct Run<'r, 's, R: Rig> {
     asker: &'r mut dyn Asker,
     clock: &'r mut dyn Clock,
     simulated: Option<&'r SimulatedParticipant>,
-    /// The stimulus that was played last, by its file name: a trial before its questions, or a
-    /// texture that is being matched.
+    /// The file name of the stimulus that was played last. The stimulus is a trial before its
+    /// questions, or a texture that is being matched.
     felt: Option<(Phase, String)>,
     /// How the last trial was played.
     presented: Presentation,
@@ -95,7 +95,8 @@ impl<R: Rig> Run<'_, '_, R> {
         self.asker.show(view, done, all);
     }
 
-    /// Waits for a key to which `meaning` gives a meaning. Returns `None` if the session is left.
+    /// Waits for a key for which `meaning` returns a value, and returns this value. Returns `None`
+    /// if the session is left.
     fn wait<T>(&mut self, mut meaning: impl FnMut(Key) -> Option<T>) -> Option<T> {
         loop {
             if self.rig.is_interrupted() {
@@ -155,7 +156,8 @@ impl<R: Rig> Run<'_, '_, R> {
             let texture = stimulus.texture.clone();
             self.show(&View::Playing { texture });
             let mut ends = |asker: &mut dyn Asker| {
-                // Stored, because the rig may call this again after it was told to end.
+                // The result is stored, because the rig may call this function again after it was
+                // told to end.
                 left |= asker.key() == Some(Key::Quit);
                 left
             };
@@ -179,8 +181,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Records that a stimulus was stopped while it played, because the session is left. Returns
-    /// false, which ends the session.
+    /// Records that a stimulus was stopped while it played, because the session is left. Always
+    /// returns false, to end the session.
     fn stopped(&mut self, left: bool, played: Playback) -> Result<bool, R::Error> {
         let reason = if left { StopReason::Left } else { StopReason::Interrupted };
         let at_ms = self.clock.now_ms();
@@ -200,8 +202,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(())
     }
 
-    /// Plays a stimulus once. Returns `None` if the device ran out of samples, so that it must be
-    /// played again. [`Presentation::repeats`] counts this.
+    /// Plays a stimulus once. Returns `None` if the device ran out of samples. The stimulus must
+    /// then be played again. [`Presentation::repeats`] counts this.
     fn attempt(
         &mut self,
         stimulus: &Stimulus,
@@ -225,7 +227,7 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(None)
     }
 
-    /// Reports how a trial left its target.
+    /// If the motion of a trial left its target, reports how.
     fn tell_off_target(&mut self, stimulus: &Stimulus) {
         let reasons = self.presented.felt.as_ref().map(|felt| &felt.off_target);
         if let Some(reasons) = reasons.filter(|reasons| !reasons.is_empty()) {
@@ -239,7 +241,8 @@ impl<R: Rig> Run<'_, '_, R> {
         self.notice = Some(notice);
     }
 
-    /// Asks for a rating. Returns it with the time it took, milliseconds.
+    /// Asks for a rating. Returns the rating, and the time that the participant took for it,
+    /// milliseconds.
     fn ask(
         &mut self,
         phase: Phase,
@@ -270,7 +273,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(rating.map(|rating| (rating, took_ms)))
     }
 
-    /// Plays a texture until a key is pressed that changes its level, and records the key.
+    /// Plays a texture until the participant presses a key that has a meaning now, and records the
+    /// key.
     fn matching(
         &mut self,
         phase: Phase,
@@ -336,7 +340,7 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             left || pressed.is_some()
         };
-        // A trace may end before the participant has decided, so it is played again.
+        // A trace may end before the participant has decided. In this case it is played again.
         let played = loop {
             let Some(played) = self.attempt(stimulus, &mut ends)? else {
                 continue;
@@ -356,7 +360,7 @@ impl<R: Rig> Run<'_, '_, R> {
         } else if !self.rested(end_ms) {
             return Ok(false);
         }
-        // Recorded even after an interruption, so that the rest is not repeated.
+        // The rest is recorded even after an interruption, so that it is not repeated.
         let at_ms = self.clock.now_ms();
         self.session.rested(at_ms)?;
         Ok(!self.rig.is_interrupted())

@@ -234,7 +234,7 @@ impl<'a> Session<'a> {
         let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
         };
-        // Read first, because the press may end the rise.
+        // This is read before the press, because the press may end the rise.
         let was_rising = matching.is_rising();
         matching.press(key);
         let gain_db = matching.gain_db();
@@ -319,7 +319,7 @@ impl<'a> Session<'a> {
         self.record(Line::Rest { after, at_ms, simulated })
     }
 
-    /// Applies the line before writing it, so that only valid lines are written.
+    /// First applies the line and then writes it, so that only valid lines are written.
     fn record(&mut self, line: Line) -> Result<(), LabError> {
         let applied = self.progress.apply(self.study, self.plan, &line);
         applied.map_err(|problem| self.misplaced(&problem))?;
@@ -327,7 +327,7 @@ impl<'a> Session<'a> {
     }
 
     fn misplaced(&self, problem: &str) -> LabError {
-        // The line is not in the file, so it has no number.
+        // The number is 0, because the line is not in the file.
         LabError::Line { file: self.log.path().to_owned(), line: 0, problem: problem.to_owned() }
     }
 }

@@ -19,8 +19,8 @@ const NOISE: f64 = 0.1;
 const GAIN_DB: (f64, f64) = (-18.0, -2.0);
 
 /// A simulated participant. Representations with a larger nine-band error get lower ratings,
-/// because this error was the paper's best predictor of similarity. A rating depends only on the
-/// seed, the participant and the trial, not on earlier ratings.
+/// because this error was the paper's best predictor of similarity. A rating does not depend on
+/// earlier ratings, but only on the seed, the participant and the trial.
 #[derive(Debug, Clone)]
 pub struct SimulatedParticipant {
     seed: u64,
@@ -71,7 +71,7 @@ impl SimulatedParticipant {
         let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);
         let off_db = matching.gain_db() - wanted_db;
         if matching.is_rising() {
-            // Stops where the texture is at least as strong as the participant wants it.
+            // The rise stops when the texture is at least as strong as the participant wants.
             return if off_db < 0.0 && matching.gain_db() < 0.0 {
                 GainKey::MuchStronger
             } else {

@@ -10,7 +10,7 @@ use htex_scene::file::{DeviceChoice, Levels, Surface};
 use crate::study::file::Study;
 use crate::study::lines::OutputLevels;
 
-/// Level of a sound that counts as the maximum if the study does not set one, decibels relative to
+/// If the study does not set the maximum level of a sound, this level is used, decibels relative to
 /// full scale.
 const SOUND_DBFS: f64 = -18.0;
 
@@ -26,8 +26,8 @@ pub struct Stimulus {
     /// Gain relative to the maximum, decibels. If `None`, the stimulus plays at the level that the
     /// study's device sets.
     pub gain_db: Option<f64>,
-    /// Level (RMS, in the assets' unit) that was mapped to the device's drive voltage or preview
-    /// level when the participant set the gain. Only devices whose `levels` setting is `own` use
+    /// When the participant set the gain, this level (RMS, in the assets' unit) was mapped to the
+    /// device's drive voltage or preview level. Only devices whose `levels` setting is `own` use
     /// this level.
     pub reference_rms: Option<f64>,
     /// File name, without extension, for the recording of the felt force. `None` if this force is
@@ -136,7 +136,7 @@ impl Meter {
             let value = f64::from(*sample);
             self.peak = self.peak.max(value.abs());
             self.energy += value * value;
-            // One sample at a time, because the largest mean may lie inside a block.
+            // The samples are pushed one by one, because the largest mean may occur inside a block.
             self.last.push(std::slice::from_ref(sample));
             self.direct = self.direct.max(self.last.mean_v().abs());
         }

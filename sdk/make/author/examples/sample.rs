@@ -20,7 +20,7 @@ fn main() -> std::io::Result<()> {
     std::fs::write(path, texture_report(&report()))
 }
 
-/// Caption; whether the measure is a correlation; for errors, whether they are compared with the
+/// Caption, whether the measure is a correlation, and whether an error is compared with the
 /// repeatability.
 const MEASURES: [(&str, bool, bool); 4] = [
     ("Spectral correlation with the recording (1 is the best, dark)", true, false),

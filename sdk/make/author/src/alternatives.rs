@@ -13,9 +13,9 @@ use crate::request::ModelRequest;
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
 /// Error of a single band (of the nine) above which a warning is given, decibels. The worst known
-/// fit without a better one is from `sbeta.error=magnitude` with bins beside the peaks, which
-/// follows only the strongest bins. On a spectrum that falls steeply, its error is 26 dB in the
-/// highest band and 10 dB RMS.
+/// fit for which no better fit exists comes from `sbeta.error=magnitude` with bins beside the
+/// peaks. This fit follows only the strongest bins. On a spectrum that falls steeply, its error is
+/// 26 dB in the highest band and 10 dB RMS.
 const BAND_LIMIT_DB: f64 = 24.0;
 
 /// A fit that was tried, with its nine-band RMS error in decibels.
@@ -34,7 +34,7 @@ pub(crate) fn warning<'a>(
     level: Level,
 ) -> Option<String> {
     let error_db = |quality: &Quality| quality.get(Measure::NineBand).unwrap_or(0.0);
-    // One band that is far off is a fault even where the other bands hide it in the RMS.
+    // A band with a large error is a fault even if the RMS is small because of the other bands.
     let excess = |quality: &Quality| {
         (error_db(quality) / LIMIT_DB).max(worst_band_db(quality) / BAND_LIMIT_DB)
     };
@@ -90,14 +90,14 @@ fn best(tried: impl Iterator<Item = TrialFit>) -> Option<TrialFit> {
 }
 
 /// Returns variants of the request's options, each named `model.option=value`. Each variant changes
-/// one option: to another of its choices, or to one end of its range.
+/// only one option, to another choice of the option or to an end of its range.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;
     for (i, option) in model.descriptor().options.iter().enumerate() {
         for value in other_values(option) {
             let mut options = choice.options.clone();
-            // This is the fit that has the error.
+            // With this value, the fit would be the one that has the error.
             if options.get(i).is_none_or(|now| *now == value) {
                 continue;
             }
@@ -126,7 +126,8 @@ fn error_of(
     level: Level,
 ) -> Option<f64> {
     let reference = one.spectrum.as_ref();
-    // Compared as an asset stores it, because the error to beat was measured like that too.
+    // The fit is compared in the form in which an asset stores it, because the other error was also
+    // measured in this form.
     let fit = fit_spectrum(model, options, &one.spectrum, one.motion(), level).ok()?;
     let magnitude = read_spectrum(model, &fit.stored, fit.level_rms, reference).ok()?;
     let error = agreement(reference, &magnitude).get(Measure::NineBand);

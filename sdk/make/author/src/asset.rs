@@ -31,13 +31,12 @@ pub struct FittedAsset {
     pub spectra: Vec<TextureSpectrum>,
     /// How much of the difference between a representation and the recorded spectra can be felt.
     /// There is one list for each representation, with one value for each of the representation's
-    /// conditions. The value is `None` at a condition that was computed between recorded
-    /// conditions.
+    /// conditions. The value is `None` if the condition was computed between recorded conditions.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
-    /// Notes about the recordings, less severe than warnings. A note says what was left out, and
-    /// why.
+    /// Notes about the recordings. They are less severe than warnings, and say what was left out
+    /// and why.
     pub notes: Vec<Notice>,
     /// All findings about the recordings, in the order of the recordings.
     pub findings: Vec<RecordingFinding>,

@@ -5,14 +5,14 @@
 //! conditions does not move the lines: the lines of one speed fade out while the lines of the next
 //! speed fade in. Therefore this module computes further conditions between two recorded speeds. It
 //! shifts both recorded spectra to the intermediate speed, by the scaling law. It then mixes the
-//! shifted spectra. We fitted five simulated reliefs at 40, 80 and 160 mm/s, and compared the fits
-//! with the simulation at 57 and 113 mm/s. For corrugated paper, the third-octave errors of the
-//! model Bands at these two speeds are 1.2 and 0.8 dB. Without added conditions, these errors would
-//! be 4.3 and 5.5 dB. On the other reliefs, the errors are 0.3 to 1.6 dB. Without added conditions,
-//! these errors would be 0.6 to 3.4 dB. One of the ten predictions gets worse: the error for vinyl,
-//! which has hardly any lines, is 1.6 dB instead of 0.9 dB at 57 mm/s. This module adds conditions
-//! only if the recordings show that frequencies follow the speed. We tried third-party recordings
-//! of strokes, and they did not show that frequencies follow the speed.
+//! shifted spectra. To test the method, we fitted five simulated reliefs at 40, 80 and 160 mm/s. We
+//! compared the fits with the simulation at 57 and 113 mm/s. For corrugated paper, the third-octave
+//! errors of the model Bands at 57 and 113 mm/s are 1.2 and 0.8 dB. Without added conditions, these
+//! errors would be 4.3 and 5.5 dB. On the other reliefs, the errors are 0.3 to 1.6 dB. Without
+//! added conditions, these errors would be 0.6 to 3.4 dB. One of the ten predictions gets worse:
+//! the error for vinyl, which has hardly any lines, is 1.6 dB instead of 0.9 dB at 57 mm/s. This
+//! module adds conditions only if the recordings show that frequencies follow the speed. We tried
+//! third-party recordings of strokes, and they did not show that frequencies follow the speed.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};
@@ -21,8 +21,8 @@ use htex_play::Mesh;
 use crate::TextureSpectrum;
 use crate::conditions::{ConditionSpectrum, four_digits};
 
-/// Smallest frequency exponent at which lines move enough to need conditions between the recorded
-/// ones.
+/// Smallest frequency exponent at which extra conditions are added. With smaller exponents, lines
+/// move too little to need them.
 const LEAST_EXPONENT: f64 = 0.5;
 /// Largest ratio of neighbouring speeds after conditions are added. Between neighbours, frequencies
 /// then move by a fifth at most.
@@ -30,8 +30,8 @@ const RATIO: f64 = 1.2;
 /// Largest number of conditions that are added.
 const MOST: usize = 64;
 
-/// Returns conditions between recorded conditions of the same force, if the measured law moves
-/// frequencies.
+/// If the frequencies change with the speed in the measured law, returns conditions between
+/// recorded conditions of the same force.
 pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<ConditionSpectrum> {
     let Exponent { exponent, source, .. } = law.frequency_speed;
     if source != ExponentSource::Measured || exponent < LEAST_EXPONENT {
@@ -50,8 +50,8 @@ pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<Condi
     neighbours(recorded).into_iter().flat_map(between).take(MOST).collect()
 }
 
-/// Returns the pairs of conditions at the same force with no third speed between them, the slower
-/// one first.
+/// Returns the pairs of conditions that have the same force and no third speed between them. In
+/// each pair, the slower condition comes first.
 fn neighbours(recorded: &[ConditionSpectrum]) -> Vec<[usize; 2]> {
     let known = |i: usize| recorded[i].condition.speed_mm_s.zip(recorded[i].condition.force_n);
     let mut order: Vec<usize> = (0..recorded.len()).filter(|i| known(*i).is_some()).collect();
@@ -94,8 +94,8 @@ fn inner(slow: &Condition, fast: &Condition) -> Vec<[f64; 2]> {
 fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> TextureSpectrum {
     let motions =
         both.map(|one| [one.condition.speed_mm_s, one.condition.force_n].map(|x| x.unwrap_or(1.0)));
-    // The player's own mesh, so that the added condition lies on what the player would play between
-    // the two.
+    // This uses the player's own mesh, so that the weights are those with which a player would mix
+    // the two conditions.
     let mesh = Mesh::new(&motions);
     let mut weights = [0.0; 2];
     for (i, weight) in mesh.weights(motion[0], motion[1]).iter() {
@@ -115,7 +115,7 @@ fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> Text
         .zip(weights)
         .map(|(one, weight)| weight * level_rms(&one.spectrum.magnitude))
         .sum();
-    // A player mixes levels, which gives another level than mixing powers.
+    // A player mixes levels. Mixing powers gives another level.
     let now = level_rms(&magnitude);
     if now > 0.0 {
         magnitude.iter_mut().for_each(|m| *m *= level / now);
@@ -136,7 +136,8 @@ fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> Text
 fn moved(spectrum: &TextureSpectrum, factor: f64) -> Vec<Option<f64>> {
     let (grid, magnitude) = (&spectrum.frequency_hz, &spectrum.magnitude);
     let power = |at: usize| magnitude[at] * magnitude[at];
-    // Frequencies stretched by `factor` spread the same power over `factor` times as many bins.
+    // If frequencies are stretched by `factor`, the same power is spread over `factor` times as
+    // many bins.
     let of = |hz: &f64| {
         let from = hz / factor;
         let above = grid.partition_point(|f| *f < from);
@@ -153,7 +154,7 @@ fn moved(spectrum: &TextureSpectrum, factor: f64) -> Vec<Option<f64>> {
     grid.iter().map(of).collect()
 }
 
-/// Returns a signal played faster by `factor`, with linear interpolation between samples.
+/// Speeds a signal up by `factor`, with linear interpolation between samples.
 fn faster(signal: &[f64], factor: f64) -> Vec<f64> {
     let samples = (signal.len() as f64 / factor) as usize;
     let at = |i: usize| {

@@ -1,10 +1,11 @@
 //! Repeatability: how much the spectra of one texture differ between blocks of time.
 //!
-//! Overlapping windows share samples. Repeatability cannot be computed from two spectra that each
-//! average every second window. Because windows overlap, the two spectra would share samples, and
-//! the difference between them would be several times too small. This module uses blocks of time
-//! instead, because blocks share no samples. Each block lasts up to a second. The difference
-//! between blocks therefore includes the drift of texture, finger and motion within about a second.
+//! Overlapping windows share samples. One could compute the repeatability from two spectra, one of
+//! the odd windows and one of the even windows. But windows overlap, so the two spectra would share
+//! samples, and the difference between them would be several times too small. This module uses
+//! blocks of time instead, because blocks share no samples. Each block lasts up to a second. The
+//! difference between blocks therefore includes the drift of texture, finger and motion within
+//! about a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -13,7 +14,7 @@ use htex_dsp::spectrum::Complex;
 
 use crate::spectrum::{Averaging, SegmentSpectra, average, spans_of};
 
-/// Shortest and longest block, in segments of 0.2 s: 0.2 to 1 s.
+/// Shortest and longest block, counted in segments of 0.2 s. The lengths are 0.2 and 1 s.
 const BLOCK: [f64; 2] = [1.0, 5.0];
 /// Fewest blocks that are compared.
 const FEWEST: usize = 4;
@@ -31,8 +32,8 @@ pub(crate) struct Span {
 }
 
 /// The expected difference between the spectra of two recordings of one texture, decibels. It is
-/// computed from two spectra, one of the odd blocks and one of the even blocks: the RMS of their
-/// difference, divided by √2.
+/// computed from two spectra, one of the odd blocks and one of the even blocks. It is the RMS of
+/// the difference of these spectra, divided by √2.
 ///
 /// Each of the two spectra averages n/2 blocks, so its random error is √2 times the error of an
 /// average over all n blocks. The division by √2 corrects for this.
@@ -74,12 +75,12 @@ pub(crate) fn repeatability(
 }
 
 /// Returns the block of each span, counted from 0. A span that shares samples with two blocks gets
-/// `None`; with fewer than four blocks, the whole result is `None`. Spans must be in the order of
-/// their recordings and times.
+/// `None`. If there are fewer than four blocks, the whole result is `None`. Spans must be in the
+/// order of their recordings and times.
 ///
-/// Each stretch of overlapping spans is cut into equal blocks. A block is a quarter of what is
-/// read, but at least 0.2 s and at most 1 s. A sweep, of which only one segment is read, is one
-/// block.
+/// Each stretch of overlapping spans is cut into equal blocks. The length of a block is at most a
+/// quarter of the total length that is read, limited to the range from 0.2 to 1 s. Only one segment
+/// of a sweep is read, so each sweep is one block.
 pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     let stretches = stretches(spans);
     let read: f64 = stretches.iter().map(|stretch| length(stretch)).sum();
@@ -96,12 +97,13 @@ pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
 /// belongs to the block that contains its middle, unless it shares samples with an earlier block.
 fn cut(stretch: &[Span], longest: f64, mut count: usize, blocks: &mut Vec<Option<usize>>) -> usize {
     let (start, length) = (earliest(stretch), length(stretch));
-    // A block shorter than a segment would share samples with the next one.
+    // If a block were shorter than a segment, it would share samples with the next block.
     let most = libm::floor(length + TOLERANCE);
-    // libm's rounding and the tolerance keep the number of blocks the same on all processors, where
-    // a length is a whole number of segments but for its last digit.
+    // A length may differ from a whole number of segments only in its last digit. In this case,
+    // `libm` and the tolerance keep the number of blocks the same on all processors.
     let parts = libm::ceil(length / longest - TOLERANCE).min(most).max(1.0);
-    // The part of the open block, the end of its spans so far, and the end of all earlier blocks.
+    // Three values: the part number of the open block, the end of its spans so far, and the end of
+    // all earlier blocks.
     let (mut open, mut end, mut closed) = (None, start, f64::NEG_INFINITY);
     for span in stretch {
         let middle = 0.5 * (span.from + span.to) - start;
@@ -188,7 +190,7 @@ mod tests {
     #[test]
     fn blocks_are_equal_and_share_no_sample() {
         let one = |count| counts(&windows(0, 0.0, count).collect::<Vec<_>>());
-        // 10 s, 2 s, 0.8 s, 0.7 s.
+        // The lengths are 10 s, 2 s, 0.8 s and 0.7 s.
         assert_eq!(one(99), Some(vec![9; 10]));
         assert_eq!(one(19), Some(vec![4; 4]));
         assert_eq!(one(7), Some(vec![1; 4]));
@@ -201,7 +203,7 @@ mod tests {
         let sweeps: Vec<Span> = (0..5).flat_map(|i| windows(0, 6.1 * f64::from(i), 1)).collect();
         assert_eq!(counts(&sweeps), Some(vec![1; 5]));
         assert_eq!(counts(&sweeps[..3]), None);
-        // Two recordings; part of the first one is not read.
+        // There are two recordings. A part of the first recording is not read.
         let takes: Vec<Span> =
             windows(0, 0.0, 9).chain(windows(0, 40.0, 9)).chain(windows(1, 0.0, 9)).collect();
         assert_eq!(counts(&takes), Some(vec![4; 6]));

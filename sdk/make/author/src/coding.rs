@@ -4,8 +4,8 @@
 use htex_format::Asset;
 use serde::{Deserialize, Serialize};
 
-/// Number of conditions up to which an asset is not coded unless the user asks for it. Such an asset
-/// has few kilobytes, so it is worth more that every reader can open it.
+/// Number of conditions up to which an asset is not coded unless the user asks for it. Such an
+/// asset has only a few kilobytes, so it is more important that every reader can open it.
 const MOST_PLAIN: usize = 8;
 
 /// Selects whether an asset is coded, i.e. stores the same texture in fewer bytes.

@@ -15,8 +15,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. Values that are computed from rendered samples are missing if two
-    /// recordings are compared, because only representations can be rendered.
+    /// The measures of agreement. If two recordings are compared, values that are computed from
+    /// rendered samples are missing, because only representations can be rendered.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.
@@ -28,7 +28,8 @@ pub struct Difference {
 pub struct FeltDifference {
     /// Centre frequencies of third-octave bands, hertz.
     pub centre_hz: Vec<f64>,
-    /// For each band: how much the two levels above the detection threshold differ, decibels.
+    /// For each band, the difference between the two levels above the detection threshold,
+    /// decibels.
     pub error_db: Vec<f64>,
     /// The difference over all bands, in a few numbers.
     #[serde(flatten)]
@@ -46,8 +47,8 @@ pub struct ComparedModel {
     pub held_out: Option<HeldOut>,
     #[serde(flatten)]
     pub difference: Difference,
-    /// How the texture that the model renders fluctuates, compared with the recording. `None` if
-    /// the recording is too short to measure this.
+    /// How the fluctuation of the rendered texture differs from the fluctuation of the recording.
+    /// `None` if the recording is too short to measure this.
     pub fluctuation: Option<FluctuationDifference>,
 }
 
@@ -132,7 +133,8 @@ pub fn compare(
     compared.collect()
 }
 
-/// Returns the index of the condition that counts most in what is played at a motion.
+/// Returns the index of the condition that has the largest weight in the texture that is played at
+/// a motion.
 fn nearest(stored: &Representation, conditions: &[Condition], motion: htex_play::Motion) -> usize {
     let known = |value: Option<f64>| value.unwrap_or(0.0);
     let points: Vec<[f64; 2]> = stored

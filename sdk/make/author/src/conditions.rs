@@ -23,7 +23,8 @@ pub(crate) struct ConditionSpectrum {
     /// Power of each block of time on the spectrum's grid; `None` if there are fewer than four
     /// blocks, or if the spectrum was not averaged from blocks.
     pub(crate) block_power: Option<Vec<Vec<f64>>>,
-    /// The spectra of the odd and of the even blocks of time; `None` as for `block_power`.
+    /// The spectra of the odd and of the even blocks of time. `None` in the same cases as
+    /// `block_power`.
     pub(crate) halves: Option<[TextureSpectrum; 2]>,
 }
 
@@ -117,12 +118,14 @@ impl Gathering {
 }
 
 impl ConditionSpectra {
-    /// Averages the spectra of each condition, estimates the law of the texture from them, and adds
-    /// conditions between recorded ones where the law moves frequencies.
+    /// Averages the spectra of each condition, and estimates the law of the texture from them. If
+    /// frequencies change with the speed in this law, adds conditions between the recorded
+    /// conditions.
     ///
     /// # Errors
-    /// When quantities or bands differ, or only some conditions have a known speed and force. With
-    /// `strict`, also when the levels of a condition's recordings differ.
+    /// Returns an error if quantities or bands differ, or if only some conditions have a known
+    /// speed and force. If `strict` is set, also returns an error if the levels of a condition's
+    /// recordings differ.
     pub(crate) fn new(
         takes: Vec<SegmentedTake>,
         request: &AssetRequest,
@@ -137,8 +140,9 @@ impl ConditionSpectra {
             let notices = [take.warnings, take.notes];
             let source = Source { blake3: take.file.blake3(), ..take.source };
             recordings.add(source, take.simulated, notices, take.findings);
-            // The first recording of a condition decides its speed and force, so the order of
-            // recordings can matter where they lie close together.
+            // The first recording of a condition determines the speed and force of the condition.
+            // Therefore, the order of recordings can matter if their speeds and forces are close
+            // together.
             match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
                 Some(gathering) => {
                     gathering.parts.push(part);
@@ -227,8 +231,8 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
 
 /// Rounds to four digits, the precision of measured speeds and forces.
 pub(crate) fn four_digits(x: f64) -> f64 {
-    // Rounded as text: of all numbers that agree to four digits, this one has the shortest form in
-    // the manifest.
+    // The number is rounded by writing it as text. Of all numbers with the same four digits, the
+    // result has the shortest form in the manifest.
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 

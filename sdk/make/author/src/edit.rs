@@ -28,10 +28,10 @@ pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
 fn lost(bytes: &[u8], limits: &Limits, asset: &Asset, findings: &[Finding]) -> Vec<String> {
     let unnamed = findings.iter().filter(|finding| finding.code == "ENTRY_UNREFERENCED");
     let mut lost: Vec<String> = unnamed.map(|finding| finding.message.clone()).collect();
-    // Converted through JSON text, as it would be written to the file.
+    // The manifest is converted to JSON text, as it would be written to the file, and parsed again.
     let written = serde_json::to_vec(&asset.manifest).unwrap_or_default();
     let read = htex_format::manifest_bytes(bytes, limits).unwrap_or_default();
-    // A manifest that this program wrote has the same bytes, and loses nothing.
+    // If this program wrote the manifest, the bytes are the same, and nothing is lost.
     if read != written {
         let read = htex_format::manifest_json(bytes, limits).unwrap_or_default();
         let written = htex_format::parse_json(&written).unwrap_or_default();

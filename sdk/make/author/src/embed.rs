@@ -8,8 +8,8 @@ use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::AuthorError;
 
-/// Embeds the WASM modules of fitted models into an asset, and signs each if a key is
-/// given. `registry` must have loaded the models from these same `files`.
+/// Embeds the WASM modules of fitted models into an asset. If a key is given, signs each module.
+/// `registry` must have loaded the models from these same `files`.
 ///
 /// # Errors
 /// See [`AuthorError`].

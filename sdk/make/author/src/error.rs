@@ -63,7 +63,8 @@ pub enum AuthorError {
         "the recordings hold different quantities, such as forces and accelerations; fit them separately"
     )]
     QuantitiesDiffer,
-    /// No segment is within the tolerance of the requested condition.
+    /// In every segment, the motion differs from the requested condition by more than the
+    /// tolerance.
     #[error(
         "{source_name}: all {segments} segments differ from their target by more than 10 %: {comparison}; give the condition that \
          was recorded, correct the scale of a column, or record again"
@@ -74,8 +75,7 @@ pub enum AuthorError {
         /// The measured and the requested values.
         comparison: String,
     },
-    /// The recording has findings that are errors or warnings, and the caller asked to refuse such
-    /// recordings.
+    /// The recording has errors or warnings, and the caller asked to refuse such recordings.
     #[error("{source_name}: refused because of findings that are errors or warnings:{}", listed(.findings))]
     Strict {
         source_name: String,
@@ -132,7 +132,7 @@ pub enum AuthorError {
         /// Range of the force, newtons.
         force_n: [f64; 2],
     },
-    /// There are too few steady windows even for a single condition.
+    /// The number of steady windows is too small for even a single condition.
     #[error(
         "only {segments} windows of 0.2 s are steady, and a condition needs {needed}; record for longer: one or two minutes of \
          strokes at all speeds and forces"
@@ -300,8 +300,7 @@ pub enum AuthorError {
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     NoParameters,
-    /// In a texture made by hand, some conditions state a speed or a force and other conditions do
-    /// not.
+    /// A texture is made by hand, and only some of its conditions state a speed or a force.
     #[error(
         "some conditions have only a speed or only a force; give both for every condition, or neither"
     )]
@@ -320,15 +319,15 @@ pub enum AuthorError {
     )]
     Weight { weight: f64 },
 
-    /// The journal of a sweep of settings could not be written. The journal stores finished points,
-    /// and the points stored before the error are still in it.
+    /// The journal of a sweep of settings could not be written. The journal stores finished points.
+    /// It still contains the points that were stored before the error.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
     /// No part of the recording can be held out to test a fit. There are too few blocks of time, or
     /// the blocks are silent or equal.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
-    /// A sweep of settings cannot use this value for this setting.
+    /// In a sweep of settings, this setting cannot have this value.
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },
 

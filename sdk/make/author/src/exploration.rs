@@ -10,8 +10,8 @@ use htex_recording::Sums;
 /// Allowed relative deviation of speed and force from their target. The paper discarded recordings
 /// with a larger deviation and repeated them.
 const TOLERANCE: f64 = 0.10;
-/// Half the length of the moving average of speed and force that is compared with the target,
-/// seconds. Faster changes come from the texture, not from the hand.
+/// A moving average of speed and force is compared with the target. This is half the length of the
+/// average, seconds. Faster changes come from the texture, not from the hand.
 const HALF_AVERAGE_S: f64 = 0.025;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -42,7 +42,7 @@ impl Exploration {
     /// Checks the ranges of the known values.
     ///
     /// # Errors
-    /// When a speed or force is negative, not finite, or above 10 m/s or 100 N.
+    /// Returns an error if a speed or force is negative, not finite, or above 10 m/s or 100 N.
     pub fn check(&self) -> Result<(), AuthorError> {
         let bad = |value: Option<f64>, max: f64| value.filter(|v| !(0.0..=max).contains(v));
         if let Some(value) = bad(self.speed_mm_s, Self::MOST_SPEED_MM_S) {
@@ -116,7 +116,8 @@ impl MotionSignal<'_> {
         })
     }
 
-    /// Returns the mean over a segment, if the averages stay within the fraction `part` of it.
+    /// Returns the mean over a segment, but only if no average differs from this mean by more than
+    /// the fraction `part`.
     pub(crate) fn steady_mean(&self, start: usize, len: usize, part: f64) -> Option<f64> {
         let mean = self.average.mean(start, start + len);
         is_near(mean, part, self.range(start, len)).then_some(mean)
@@ -127,19 +128,21 @@ impl MotionSignal<'_> {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// Returns the median over the samples of all segments, which a few outliers do not change.
+    /// Returns the median over the samples of all segments. A few outliers do not change the
+    /// median.
     fn median(&self, segments: &Segments) -> Option<f64> {
         let (starts, len) = (&segments.starts, segments.len);
         quantile(0.5, starts.len() * len, |at| self.values[starts[at / len] + at % len])
     }
 
-    /// Whether a segment stays within the tolerance of the target, if there is one.
+    /// Returns whether a segment stays within the tolerance of the target. Without a target,
+    /// returns true.
     fn is_on_target(&self, start: usize, len: usize) -> bool {
         self.target.is_none_or(|target| is_near(target, TOLERANCE, self.range(start, len)))
     }
 
-    /// Returns the target, or else the median. Adds a finding if there is no target and the motion
-    /// leaves the range of 10 % around the median.
+    /// Returns the target, or else the median. If there is no target, and the motion differs from
+    /// the median by more than 10 %, adds a finding.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
         if self.target.is_some() {
             return self.target;
@@ -179,7 +182,7 @@ pub(crate) struct SegmentMotion {
     /// Speed and force: the targets, or else the medians of the measured signals.
     pub(crate) motion: Exploration,
     pub(crate) spread: Spread,
-    /// The finding that segments are left out because they are off their target.
+    /// The finding that some segments are left out, because they are off their target.
     pub(crate) off_target: Findings,
     /// The findings that the motion differs from its median by more than 10 %.
     pub(crate) unsteady: Findings,
@@ -190,7 +193,8 @@ impl SegmentMotion {
     /// %. Measures the motion in the remaining segments.
     ///
     /// # Errors
-    /// When the target or a measured value is out of range, or no segment remains.
+    /// Returns an error if the target or a measured value is out of range, or if no segment
+    /// remains.
     pub(crate) fn new(
         recording: &Recording,
         all: Segments,
@@ -231,7 +235,7 @@ fn on_target(
     if off.is_empty() {
         return Ok(segments);
     }
-    // Messages compare the target with all segments, not with those that are left.
+    // Messages compare the target with all segments, and not only with the remaining ones.
     let compared = signals().filter_map(|signal| signal.comparison(&segments));
     let comparison = compared.collect::<Vec<_>>().join("; ");
     if kept.is_empty() {

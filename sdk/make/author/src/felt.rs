@@ -10,23 +10,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::spectrum::{SpectrumRef, TextureSpectrum};
 
-/// Smallest difference in level that people notice, decibels: 20 %. This is the smallest median
-/// reported by Forta, Griffin & Morioka 2012, *Experimental Brain Research* 220, whose conditions
-/// range from 20 % to 58 %.
+/// Smallest difference in level that people notice, decibels: 20 %. Forta, Griffin & Morioka 2012,
+/// *Experimental Brain Research* 220, report medians of 20 % to 58 % for their conditions. This is
+/// the smallest of these medians.
 pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 
 /// Exponent with which a sensation is assumed to grow with the displacement of the skin (Stevens'
-/// power law). No experiment of ours supports it: on the confusions of five materials, this measure
-/// is not better than others (`tests/peers/confusions.py`).
+/// power law). We have no experiment that supports this exponent: on the confusions of five
+/// materials, the measure with this exponent is not better than other measures
+/// (`tests/peers/confusions.py`).
 const SENSATION_EXPONENT: f64 = 0.3;
 
-/// Bound for how much two recordings of the same surface differ, in multiples of the first
+/// Bound for the difference between two recordings of the same surface, in multiples of the first
 /// recording's repeatability. The repeatability itself is not a bound but a median: half of all
 /// second recordings differ by more. If a surface is recorded a second time, the second recording
-/// is within this bound in nine out of ten cases. We compared 180 pairs of takes: in each pair, two
-/// recordings of a robot's fingertip on the same material, with 20 materials in total. In 94 % of
-/// the pairs, the difference was at most 3.5 times the repeatability of the first take. In 89 %, it
-/// was at most 3 times the repeatability.
+/// is within this bound in nine out of ten cases. We compared 180 pairs of takes. The two takes of
+/// a pair are recordings of a robot's fingertip on the same material. There were 20 materials in
+/// total. In 94 % of the pairs, the difference was at most 3.5 times the repeatability of the first
+/// take. In 89 %, it was at most 3 times the repeatability.
 pub const REPEATABILITY_BOUND: f64 = 3.5;
 
 /// Sensation levels (levels relative to the detection threshold) of two spectra in third-octave
@@ -51,9 +52,9 @@ pub struct Felt {
     /// Difference of the total levels above the threshold, decibels. The total level is computed
     /// from the energy of all bands together.
     pub total_error_db: f64,
-    /// RMS difference in sensation, over all bands. The sensation in a band is the ratio of the
-    /// displacement to the detection threshold, raised to the power of 0.3. At the threshold, the
-    /// sensation is 1.
+    /// RMS difference in sensation, over all bands. To compute the sensation in a band, the
+    /// displacement is divided by the detection threshold, and the ratio is raised to the power of
+    /// 0.3. At the threshold, the sensation is 1.
     pub sensation_error_rms: f64,
 }
 
@@ -102,8 +103,8 @@ pub struct FeltError {
     /// soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
     /// Whether the nine-band error is at most [`REPEATABILITY_BOUND`] times the recording's own
-    /// repeatability. If this is true, a second recording could differ from the first as much as
-    /// the model does. False if the repeatability is not known.
+    /// repeatability. If this is true, a second recording could differ from the first recording as
+    /// much as the model differs from it. False if the repeatability is not known.
     pub within_repeatability: bool,
 }
 
@@ -140,8 +141,8 @@ impl FeltError {
         }
     }
 
-    /// Combines two results into a worst case. For each number, the result takes the value that is
-    /// further from 0. A flag is true only if it is true in both results.
+    /// Combines two results into a worst case. For each number, the result contains the value that
+    /// is further from 0. A flag is true only if it is true in both results.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
@@ -160,11 +161,10 @@ impl FeltError {
     }
 }
 
-/// Counts of two groups of textures: textures whose error is below a listener's difference
-/// threshold, and textures that the listener cannot feel at all. Another count,
-/// `within_repeatability`, is the number of textures whose error is within the recording's own
-/// variation. `within_repeatability` does not show what can be felt: the less well the recordings
-/// repeat, the higher this count is.
+/// Numbers of textures: how many have an error below a listener's difference threshold, and how
+/// many the listener cannot feel at all. Another count, `within_repeatability`, is the number of
+/// textures whose error is within the variation of the recording itself. This count does not show
+/// what can be felt: the more the recordings vary, the higher `within_repeatability` is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FeltShare {
@@ -233,8 +233,8 @@ pub fn felt(
         .filter(|((r, m), _)| **r > 0.0 || **m > 0.0)
         .map(|(_, error)| *error)
         .collect();
-    // Energies are added before the threshold applies: several bands can be felt together although
-    // each of them is too weak by itself.
+    // Energies are added before they are compared with the threshold, because several bands can be
+    // felt together even if each band alone is too weak.
     let total = |all: &[Option<f64>]| self::level_db(all.iter().flatten().sum()).max(0.0);
     let sensations = reference_db.iter().zip(&level_db);
     let sensations: Vec<f64> = sensations.map(|(r, m)| sensation(*m) - sensation(*r)).collect();
@@ -265,8 +265,8 @@ fn energies(
         };
         let peak_m = magnitude * displacement_m(hertz, quantity, &listener.skin);
         let ratio = peak_m / listener.threshold_m(hertz);
-        // Magnitudes are the peaks that sinusoids have under a Hann window, which spreads their
-        // energy over 1.5 bins.
+        // Magnitudes are the peaks of sinusoids under a Hann window. This window spreads the energy
+        // of a sinusoid over 1.5 bins.
         *energies[band].get_or_insert(0.0) += ratio * ratio / 1.5;
     }
     energies
@@ -304,8 +304,8 @@ fn level_db(energy: f64) -> f64 {
     10.0 * libm::log10(energy.max(1e-30))
 }
 
-/// Returns the sensation that a level above the threshold causes: displacement over threshold, to
-/// the power of [`SENSATION_EXPONENT`].
+/// Returns the sensation for a level above the threshold: the ratio of displacement to threshold,
+/// raised to the power of [`SENSATION_EXPONENT`].
 fn sensation(level_db: f64) -> f64 {
     libm::pow(10.0, SENSATION_EXPONENT * level_db / 20.0)
 }
@@ -352,15 +352,15 @@ mod tests {
             (Quantity::LateralForce, force),
         ] {
             let felt = compared(line(peak), line(10.0 * peak), quantity);
-            // The line is seen in three bins of two bands. The neighbours' thresholds differ by
-            // less than 0.4 dB.
+            // The spectral line appears in three bins, which belong to two bands. The thresholds of
+            // neighbouring bins differ by less than 0.4 dB.
             let energy: f64 = felt.reference_db.iter().map(|db| 10f64.powf(db / 10.0)).sum();
             assert!(level_db(energy).abs() < 0.15, "{quantity}: {felt:?}");
             assert!((felt.total_error_db - 20.0).abs() < 0.15, "{quantity}: {felt:?}");
         }
     }
 
-    /// For a more sensitive person, no band's felt difference is smaller.
+    /// For a more sensitive person, the felt difference is at least as large in every band.
     #[test]
     fn a_sensitive_person_feels_no_less() {
         let (hertz, recorded) = spectra(|f| 2e-3 / (1.0 + f / 100.0));
@@ -392,8 +392,8 @@ mod tests {
         assert_eq!((found.error_rms_db, found.sensation_error_rms), (0.0, 0.0));
     }
 
-    /// A difference that lies entirely below the threshold is not felt; a difference of 6 dB far
-    /// above it is felt, in every band.
+    /// A difference that lies entirely below the threshold is not felt in any band. A difference of
+    /// 6 dB far above the threshold is felt in every band.
     #[test]
     fn only_what_is_felt_counts() {
         let below = compared(|_| 1e-9, |_| 1e-8, Quantity::LateralForce);

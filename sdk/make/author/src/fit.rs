@@ -38,13 +38,13 @@ pub(crate) struct FittedModel {
     pub(crate) fit_ms: f64,
 }
 
-/// Fits models at all conditions. `blocks` are the blocks of time that a grid leaves out, which are
+/// Fits models at all conditions. `blocks` are the blocks of time that a grid leaves out. They are
 /// needed for held-out errors. If a model has a large error, `alternatives` are tried. `begins` is
 /// called with each model before it is fitted.
 ///
 /// # Errors
-/// When no model could be fitted, or when a fit fails for another reason than a refusal by the
-/// model.
+/// Returns an error if no model could be fitted, or if a fit fails and the reason is not that the
+/// model refused the spectrum.
 pub(crate) fn fit_models(
     choices: &[ModelRequest],
     all: &[ConditionSpectrum],
@@ -66,8 +66,8 @@ pub(crate) fn fit_models(
                 fitted.warnings.extend(both.map(Notice::from));
                 fitted.models.push(one);
             }
-            // Only a refusal by the model itself skips it. Every other error concerns the
-            // recordings or the program.
+            // A model is skipped only if the model itself refuses the spectrum. Every other error
+            // concerns the recordings or the program.
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
                 let message = match call {
                     "fit" => message,
@@ -114,8 +114,8 @@ pub(crate) fn fit_spectrum(
 }
 
 /// Returns the held-out error of a model at one condition: the model is fitted to the odd blocks of
-/// time and compared with the even blocks. `None` if there are too few blocks, or if the model
-/// cannot be fitted to half of them.
+/// time and compared with the even blocks. Returns `None` if there are too few blocks, or if the
+/// model cannot be fitted to the odd blocks.
 fn left_out_half(
     model: &LoadedModel,
     options: &[f64],
@@ -140,8 +140,8 @@ fn fit_model(
         fit_spectrum(model, &choice.options, &one.spectrum, one.motion(), level)
     };
     for (condition, one) in all.iter().enumerate() {
-        // A model that follows the motion plays other speeds itself, and cannot be fitted to a
-        // spectrum that was recorded nowhere.
+        // A model that follows the motion can itself play other speeds. It cannot be fitted to a
+        // spectrum that was computed and not recorded.
         if model.follows_motion() && !one.spectrum.is_recorded() {
             continue;
         }

@@ -18,7 +18,8 @@ use htex_recording::Sums;
 const SECONDS: f64 = 20.0;
 /// The seed is always the same, so that measuring again gives the same numbers.
 const SEED: u64 = 1;
-/// Samples rendered before the measured ones, seconds: a voice may begin softly.
+/// Duration of the samples that are rendered before the measured samples, seconds. They are needed
+/// because a voice may begin softly.
 const LEAD_S: f64 = 0.5;
 
 /// Measures how a recording fluctuates; `None` if the recording is shorter than 3 s or silent.
@@ -27,35 +28,42 @@ pub fn fluctuation(recording: &Recording) -> Option<Fluctuation> {
     Fluctuation::new(&axes, recording.rate_hz)
 }
 
-/// A recording below this fraction of the rendering's sample rate has fewer third octaves.
+/// If the sample rate of a recording is below this fraction of the rendering's sample rate, the
+/// recording has fewer third octaves.
 const LOW_RATE: f64 = 0.53;
 
-/// Half the length of the moving average of speed and force by which a recording's level is
-/// corrected, seconds. The law is about how the finger moves, not about how it trembles.
+/// The level of a recording is corrected by a moving average of speed and force. This is half the
+/// length of the average, seconds. The average is needed because the law describes how the finger
+/// moves, and not how it trembles.
 const HALF_AVERAGE_S: f64 = 0.1;
 /// Largest correction of speed and force, as a ratio.
 const MOST_RATIO: f64 = 10.0;
-/// An excess counts if it is above this many standard errors, so that stationary noise gives 0.
+/// An excess counts only if it is above this many standard errors, so that stationary noise gives
+/// 0.
 const LEAST_ERRORS: f64 = 0.5;
 
-/// Estimates the fluctuation of a texture from all its recordings: how strong one envelope that all
-/// bands share must be for their envelopes to vary as much as in the recordings. `None` if nothing
-/// exceeds stationary noise, or if no recording of at least 1 s is read in windows: the middles of
-/// sweeps, 0.2 s each, are too short.
+/// Estimates the fluctuation of a texture from all its recordings. Suppose that all bands are
+/// multiplied by the same envelope. The estimate is the strength of this envelope at which the
+/// envelopes of the bands vary as much as in the recordings. `None` if nothing exceeds stationary
+/// noise, or if no recording of at least 1 s is read in windows. The middles of sweeps are too
+/// short, because they have only 0.2 s each.
 ///
-/// In each of four bands, the variance of the amplitude envelope that exceeds the one of stationary
-/// noise is averaged over the recordings, by their lengths. Of the four averages, the second lowest
-/// counts. What one band alone has more, the others do not share. On recorded sounds and strokes, the
-/// median of the bands predicts the other half of a recording less well (modulation spectrum: 4.14
-/// and 4.47 dB instead of 4.06 and 4.31), and so does what all third octaves share (4.80 and 4.40).
+/// In each of four bands, the function computes by how much the variance of the amplitude envelope
+/// exceeds the variance for stationary noise. It averages this excess over the recordings, weighted
+/// by their lengths. Of the four averages, it uses the second lowest, because the excess of a
+/// single band is not shared by the other bands. We compared two alternatives on recorded sounds
+/// and strokes. The errors of predicting the modulation spectrum of the other half of a recording
+/// are 4.06 and 4.31 dB. With the median of the bands, they are 4.14 and 4.47 dB. With the part
+/// that all third octaves share, they are 4.80 and 4.40 dB.
 ///
-/// The formula takes the variance of the envelope for the variance of its part of the logarithm.
-/// An exponential moves some of it to higher frequencies: noise that fluctuates by 4 dB slowly is
-/// found to do so by 3.3 dB slowly and 1.7 dB fast. Undoing this predicted the other halves less
-/// well (sounds: 4.19 instead of 4.06 dB).
+/// The formula computes the strength of each part of the logarithm from the variance of the
+/// envelope in the same range of frequencies. But the exponential moves some of the variance to
+/// higher frequencies. For example, the estimate for noise that fluctuates slowly by 4 dB is 3.3 dB
+/// for the slow part and 1.7 dB for the fast part. We tried to correct this effect, but with the
+/// correction the other halves were predicted less well (sounds: 4.19 instead of 4.06 dB).
 ///
-/// Where speed or force were recorded, the level is divided by the texture's law first: a player
-/// applies the law itself.
+/// If speed or force were recorded, the level is first divided by the texture's law, because a
+/// player applies the law itself.
 pub(crate) fn fluctuation_of_texture(
     takes: &[Take],
     segments: SegmentChoice,
@@ -65,7 +73,7 @@ pub(crate) fn fluctuation_of_texture(
     estimate(recordings.map(|recording| Corrected::new(recording, 0..recording.samples(), law)))
 }
 
-/// The recordings that are read in windows, and not as the middles of sweeps.
+/// Returns the recordings from which windows are read, and not the middles of sweeps.
 fn read_in_windows(
     takes: &[Take],
     segments: SegmentChoice,
@@ -93,7 +101,7 @@ fn estimate(parts: impl Iterator<Item = Corrected>) -> Option<htex_format::Fluct
     let strength_db = [0, 1].map(|range| {
         let mut all: Vec<f64> = found.iter().map(|excess| excess[range]).collect();
         all.sort_by(f64::total_cmp);
-        // The lower one of the two in the middle.
+        // Takes the lower one of the two middle values.
         let shared = all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or_default();
         // The envelope exp(x) of Gaussian noise x has the relative variance exp(σ²) - 1.
         libm::sqrt(libm::log1p(shared)) * 20.0 / std::f64::consts::LN_10
@@ -118,7 +126,8 @@ impl Average {
         }
     }
 
-    /// The mean in each range, or 0 where it is within its error; `None` if nothing was added.
+    /// Returns the mean in each range of frequencies, or 0 if the mean is within its error. Returns
+    /// `None` if nothing was added.
     fn excess(&self) -> Option<[f64; 2]> {
         let mean = |range: usize| {
             let least = LEAST_ERRORS * libm::sqrt(self.error[range]);
@@ -158,8 +167,8 @@ impl Corrected {
     }
 }
 
-/// The factor by which the law changes the level at each of the samples, relative to their mean
-/// motion. It is 1 where speed and force were not recorded.
+/// Returns, for each sample, the factor by which the law changes the level, relative to the mean
+/// motion of the samples. The factor is 1 if speed and force were not recorded.
 fn correction(recording: &Recording, samples: Range<usize>, law: &Law) -> Vec<f64> {
     let half = (HALF_AVERAGE_S * recording.rate_hz) as usize;
     let ratios = |signal: &Option<Vec<f64>>| {
@@ -201,15 +210,17 @@ impl SteadyVoice<'_> {
 
 /// Measures how well the fluctuation of the first halves of recordings predicts the second halves.
 ///
-/// The fluctuation is estimated from all first halves together, and a noise that fluctuates like
-/// this is rendered for 20 s. The noise is cut into parts as long as the second half, because the
-/// modulation spectrum of a short signal is less certain. `held_out_error_db` is the mean, over the
-/// parts, of the difference of the modulation spectra. `halves_error_db` is the difference between
-/// the two halves of the recording. Both are averaged over the recordings by their lengths.
+/// The function estimates the fluctuation from all first halves together, and renders 20 s of noise
+/// with this fluctuation. It cuts the noise into parts that are as long as the second half of the
+/// recording, because the modulation spectrum of a short signal is less certain. For each part, it
+/// compares the modulation spectrum with that of the second half. `held_out_error_db` is the mean
+/// of these differences. `halves_error_db` is the difference between the two halves of the
+/// recording. Both are averaged over the recordings by their lengths.
 ///
-/// Returns the fluctuation with these errors, if a recording of at least 6 s is read in windows.
-/// Only the fluctuation is held out: the model was fitted to the whole recordings. A modulation
-/// spectrum hardly depends on the spectrum, because every third octave is divided by its mean.
+/// If a recording of at least 6 s is read in windows, returns the fluctuation with these errors.
+/// Only the estimate of the fluctuation leaves out the second halves. The model was fitted to the
+/// whole recordings, but this has hardly any effect: in a modulation spectrum, every third octave
+/// is divided by its mean, so it hardly depends on the spectrum.
 ///
 /// # Errors
 /// When the model cannot render.
@@ -249,16 +260,18 @@ pub(crate) fn with_held_out_error(
     Ok(htex_format::Fluctuation { held_out_error_db, halves_error_db, ..fluctuation })
 }
 
-/// Returns the mean difference of a recording's modulation spectrum to the ones of parts of a
-/// rendering. The parts are as long as the recording. `None` if they cannot be measured.
+/// Compares the modulation spectrum of a recording with the modulation spectra of parts of a
+/// rendering, and returns the mean difference. The parts are as long as the recording. Returns
+/// `None` if a part cannot be measured.
 fn error_of_parts(
     recorded: &Fluctuation,
     recording: &Corrected,
     samples: &[f64],
     rate_hz: f64,
 ) -> Option<f64> {
-    // The third octaves end at 0.95 of half the sample rate. Of a recording with a low sample rate,
-    // the rendering has twice the rate. Only every second sample makes them end at the same place.
+    // The third octaves end at 0.95 of half the sample rate. If the recording has a low sample
+    // rate, the rendering has about twice this rate. In this case only every second sample of the
+    // rendering is used, so that the third octaves of both end at the same frequency.
     let every = if recording.rate_hz < LOW_RATE * rate_hz { 2 } else { 1 };
     let samples: Vec<f64> = samples.iter().copied().step_by(every).collect();
     let rate_hz = rate_hz / every as f64;
@@ -284,7 +297,7 @@ pub(crate) fn voice_fluctuation(
     Ok(Fluctuation::new(&[&samples], rate_hz))
 }
 
-/// How the fluctuation of a signal differs from the fluctuation of a recording.
+/// The difference between the fluctuation of a signal and the fluctuation of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct FluctuationDifference {

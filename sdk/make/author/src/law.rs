@@ -5,23 +5,24 @@
 //! two conditions therefore remains uncertain.
 //!
 //! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
-//! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
-//! with the speed in ways that are no shift. In recorded strokes without spectral lines that move
-//! with the speed, the best exponent `a` was anywhere between -0.5 and 1.5. With the best exponent,
-//! the squared difference was still 0.25 to 0.9 times its value without a shift. Therefore an
-//! exponent counts as measured only in two cases: the squared difference falls to a quarter of its
-//! value without a shift, or to a quarter of its value at the assumed exponent.
+//! removed. The exponent `a` is the value at which the spectra differ least. But the spectra also
+//! change with the speed in other ways than by a shift. In recorded strokes without spectral lines
+//! that move with the speed, the best exponent `a` was anywhere between -0.5 and 1.5. With the best
+//! exponent, the squared difference was still 0.25 to 0.9 times its value without a shift.
+//! Therefore an exponent counts as measured only in two cases: the squared difference falls to a
+//! quarter of its value without a shift, or to a quarter of its value at the assumed exponent.
 //!
 //! Two spectra have many features that a shift can align by accident. In recorded strokes, one of
-//! 12 pairs of speeds gave an exponent of 0.70, which no third speed confirmed. Therefore two
-//! speeds count only if the odd and the even blocks of time give the same exponent, and if at most
-//! a tenth of the squared difference remains.
+//! 12 pairs of speeds gave an exponent of 0.70, and no third speed confirmed this exponent.
+//! Therefore, an exponent from only two speeds counts as measured only under two conditions: the
+//! odd and the even blocks of time give the same exponent, and at most a tenth of the squared
+//! difference remains.
 //!
 //! The standard error comes from a bootstrap: the blocks of every condition are drawn anew, with
-//! replacement. The 95 % intervals contain the exponent of the true spectra on simulated surfaces
-//! (`the_intervals_contain_the_exponent_of_the_true_spectra`). This exponent is not the same as the
-//! exponent of the relief, because the responses of skin and sensor do not follow the speed. On a
-//! smooth spectrum, skin and sensor lower the exponent by up to 0.25.
+//! replacement. On simulated surfaces, the 95 % intervals contain the exponent of the true spectra
+//! (`the_intervals_contain_the_exponent_of_the_true_spectra`). The exponent of the true spectra
+//! differs from the exponent of the relief, because the responses of skin and sensor do not change
+//! with the speed. On a smooth spectrum, skin and sensor lower the exponent by up to 0.25.
 
 use htex_dsp::uniform::Uniform;
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
@@ -31,11 +32,12 @@ use crate::spectrum::TextureSpectrum;
 
 /// Smallest error assumed for a recorded level, decibels.
 const LEVEL_ERROR_DB: f64 = 2.0;
-/// An exponent counts as measured only if it reduces the squared difference to this fraction of its
-/// value without a shift, or of its value at the assumed exponent.
+/// An exponent counts as measured only if it reduces the squared difference to at most this
+/// fraction. The fraction is relative to the larger of two values: the squared difference without a
+/// shift, and the squared difference at the assumed exponent.
 const MOST_LEFT: f64 = 0.25;
-/// Points per octave at which spectra are compared, and half the width over which each is read,
-/// octaves.
+/// Number of points per octave at which spectra are compared, and half the width of the range that
+/// is read for each point, octaves.
 const POINTS: f64 = 24.0;
 const HALF_WIDTH: f64 = 1.0 / 12.0;
 /// Frequency exponents that are tried, in hundredths.
@@ -44,14 +46,15 @@ const TRIED: std::ops::RangeInclusive<i32> = -30..=130;
 const LEAST_OCTAVES: f64 = 1.0;
 /// Number of bootstrap samples, each of which draws the blocks of every condition anew.
 const RESAMPLED: usize = 100;
-/// From this number of different speeds on, the spectra alone decide whether an exponent counts as
-/// measured.
+/// With at least this number of different speeds, the blocks of time are not compared to decide
+/// whether an exponent counts as measured.
 const FEWEST_SPEEDS: usize = 3;
-/// With two speeds, the squared difference must fall to this fraction. Of pairs of recorded
-/// strokes without moving lines, the smallest fraction was 0.22; on simulated surfaces, the largest
-/// is 0.06.
+/// If there are two speeds, the squared difference must fall to this fraction. For pairs of
+/// recorded strokes without moving lines, the smallest fraction was 0.22. For simulated surfaces,
+/// the largest fraction is 0.06.
 const MOST_LEFT_OF_TWO: f64 = 0.1;
-/// Largest difference of the exponents from the odd and the even blocks of two speeds.
+/// If there are two speeds, the exponents from the odd and the even blocks may differ by at most
+/// this number.
 const MOST_APART: f64 = 0.1;
 
 /// Estimates the law of conditions from their spectra. Exponents that the spectra do not determine
@@ -70,8 +73,8 @@ pub(crate) fn law(all: &[ConditionSpectrum], contact: Contact) -> Law {
         let assumed = law.frequency_speed.exponent;
         measured(&mut law.frequency_speed, frequency_exponent(all, speeds, assumed));
     }
-    // This weighs the estimates against the assumptions. The frequency exponent decides which
-    // levels are assumed, so all three go together.
+    // This call combines the estimates with the assumed exponents. The assumed exponents of the
+    // level depend on the frequency exponent, so all three exponents are passed together.
     law.reassumed(quantity, contact)
 }
 
@@ -95,8 +98,8 @@ fn logarithms(all: &[ConditionSpectrum], of: fn(&Condition) -> Option<f64>) -> O
     varies.then(|| all.iter().map(|x| libm::log(*x)).collect())
 }
 
-/// Returns the exponents of the level over speed and force with their standard errors, where the
-/// levels determine them.
+/// Returns the exponents of the level over speed and force, with their standard errors. An exponent
+/// is `None` if the levels do not determine it.
 fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2]>; 2] {
     let n = levels.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
@@ -113,7 +116,8 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
     let (vv, ff, vf) = (product(&v, &v), product(&f, &f), product(&v, &f));
     let (vy, fy) = (product(&v, &y), product(&f, &y));
     let varies = axes.map(|axis| axis.is_some());
-    // The inverse of the normal equations, without the unknown of an axis that is constant.
+    // The inverse of the matrix of the normal equations. If an axis is constant, its unknown is
+    // left out.
     let determinant = vv * ff - vf * vf;
     let inverse = match varies {
         [true, true] if determinant > 1e-6 * vv * ff => {
@@ -135,8 +139,8 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
     [varies[0].then(|| [b, error(inverse[0])]), varies[1].then(|| [c, error(inverse[2])])]
 }
 
-/// Returns the exponent of frequencies over the speed with its standard error, if the spectra
-/// determine it.
+/// Returns how frequencies depend on the speed: the exponent and its standard error. Returns `None`
+/// if the spectra do not determine the exponent.
 fn frequency_exponent(all: &[ConditionSpectrum], speeds: &[f64], assumed: f64) -> Option<[f64; 2]> {
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     let octaves: Vec<f64> =
@@ -176,7 +180,8 @@ fn distinct(speeds: &[f64]) -> usize {
 struct Aligned {
     exponent: f64,
     difference: Difference,
-    /// The squared difference, as a part of its value without a shift or at the assumed exponent.
+    /// The squared difference, divided by the larger of two values: the squared difference without
+    /// a shift, and the squared difference at the assumed exponent.
     left: f64,
 }
 
@@ -194,13 +199,14 @@ fn aligned(curves: &[Curve], octaves: &[f64], assumed: f64, most_left: f64) -> O
     let (exponent, difference) = all.into_iter().min_by(least)?;
     let [still, usual] = [0.0, assumed].map(|a| differ(a).map_or(0.0, |d| d.mean_square));
     let left = difference.mean_square / still.max(usual);
-    // At an end of the tried exponents, the difference may still be falling.
+    // If the smallest difference is at an end of the range of tried exponents, the true minimum may
+    // lie outside this range.
     let inside = exponent > ends[0] && exponent < ends[1];
     (inside && left <= most_left).then_some(Aligned { exponent, difference, left })
 }
 
-/// Returns the standard error of an exponent from the curvature of the difference, taken one tenth
-/// to either side.
+/// Returns the standard error of an exponent. It is computed from the curvature of the difference,
+/// which is evaluated 0.1 to either side of the exponent.
 fn curvature_error(curves: &[Curve], octaves: &[f64], best: &Aligned) -> Option<f64> {
     let step = 0.1;
     let differ = |a: f64| difference(curves, octaves, a).map(|d| d.mean_square);
@@ -210,7 +216,7 @@ fn curvature_error(curves: &[Curve], octaves: &[f64], best: &Aligned) -> Option<
     Some((2.0 * least.mean_square / (least.count * curvature)).sqrt())
 }
 
-/// The blocks of time of every condition, as powers on the points of a [`Curve`].
+/// For every condition, the blocks of time, as powers at the points of a [`Curve`].
 struct BlockCurves {
     low: f64,
     conditions: Vec<Vec<Vec<f64>>>,
@@ -235,7 +241,8 @@ impl BlockCurves {
             sum.resize(powers.len(), 0.0);
             sum.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
         }
-        // The number of blocks changes only the level, which is removed from every curve.
+        // The sum is not divided by the number of blocks, because this number changes only the
+        // level, and the level is removed from every curve.
         Curve { low: self.low, values: sum.into_iter().map(libm::log).collect() }
     }
 
@@ -245,8 +252,8 @@ impl BlockCurves {
         self.conditions.iter().map(of).collect()
     }
 
-    /// Returns the standard deviation of the exponent if the blocks of each condition are drawn
-    /// anew, with replacement.
+    /// Draws the blocks of each condition anew, with replacement, many times, and returns the
+    /// standard deviation of the resulting exponents.
     fn bootstrap_error(&self, octaves: &[f64], exponent: f64) -> f64 {
         let mut random = Uniform::new(1);
         let mut sample = || {
@@ -265,7 +272,7 @@ impl BlockCurves {
     }
 }
 
-/// Returns the minimum of a function near `x`, from parabolas.
+/// Finds the minimum of a function near `x` by fitting parabolas.
 fn nearest_minimum(mut x: f64, of: impl Fn(f64) -> Option<f64>) -> f64 {
     for step in [0.1, 0.05, 0.05] {
         let [Some(a), Some(b), Some(c)] = [of(x - step), of(x), of(x + step)] else { return x };
@@ -343,7 +350,7 @@ impl Curve {
 struct Difference {
     /// Mean square, in squared natural logarithms of power.
     mean_square: f64,
-    /// Number of values that do not overlap.
+    /// Number of independent values, i.e. values whose ranges do not overlap.
     count: f64,
 }
 
@@ -366,7 +373,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
             row.iter().map(|x| x - mean).collect()
         })
         .collect();
-    // The mean of the curves takes one degree of freedom at each point.
+    // At each point, computing the mean of the curves uses one degree of freedom.
     let others = curves.len() as f64 - 1.0;
     let mut squares = 0.0;
     for i in 0..points as usize {
@@ -468,8 +475,8 @@ mod tests {
         }
         println!("{inside} of {all} intervals contain the true exponent");
         let share = inside as f64 / f64::from(all);
-        // In the sample of 30, 90 to 98 % of an unlimited number give 24 to 30 with a probability
-        // of 99.9 %.
+        // If the true share is 90 to 98 %, a sample of 30 contains 24 to 30 such intervals with a
+        // probability of 99.9 %.
         let least = if xtask::prove::whole() { 0.9 } else { 0.8 };
         assert!(share >= least, "{share}");
     }
@@ -485,7 +492,8 @@ mod tests {
         let [b, c] = level_exponents(&levels, [Some(&speeds), Some(&forces)]);
         let ([b, of_b], [c, of_c]) = (b.unwrap_or_default(), c.unwrap_or_default());
         assert!((b - 0.6).abs() < 1e-9 && (c - 0.9).abs() < 1e-9);
-        // Two decibels of level error are a fifth over three octaves of speed.
+        // A level error of two decibels gives an error of about a fifth in the exponent over three
+        // octaves of speed.
         assert!((0.1..0.3).contains(&of_b) && of_c > of_b, "{of_b}, {of_c}");
         // If speed and force change together, neither exponent can be determined.
         assert_eq!(level_exponents(&levels, [Some(&speeds), Some(&speeds)]), [None; 2]);

@@ -9,12 +9,12 @@
 //! model such as Bands, the level follows from the energies that the model stores. The descriptor
 //! of such a model states that the parameters contain the level
 //! ([`htex_host::Descriptor::keeps_level`]), and the asset keeps the level of the model's fit.
-//! Before sBeta and sSlope compute the level, they round their parameters in the same way as a file
-//! that stores the parameters.
+//! sBeta and sSlope first round their parameters as the file does, and then compute the level from
+//! the rounded parameters.
 //!
 //! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate.
-//! The reason is the conversion to the player's rate, which removes up to half of the power near
-//! half the model's rate. For AR, the loss is up to 3.0 dB at 1000 Hz, which is half of AR's sample
+//! The conversion to the player's rate removes up to half of the power at frequencies close to half
+//! the model's rate. For AR, the loss is up to 3.0 dB at 1000 Hz, which is half of AR's sample
 //! rate. The stored level compensates for this loss ([`LoadedModel::played_part`]), so that the
 //! texture is played at the level of the recording.
 

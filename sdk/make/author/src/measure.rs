@@ -92,8 +92,8 @@ pub(crate) fn measure(
 ) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
-    // Lines interfere with each other. So the spectrum that is measured in a recording of them
-    // follows from their samples and not from their magnitudes.
+    // Lines interfere with each other. So the spectrum measured in a recording of the lines follows
+    // from the lines' samples and not from their magnitudes.
     let read = if model.has_lines() {
         rendered
     } else {
@@ -146,8 +146,8 @@ pub fn read_spectrum(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Renders parameters at a level and measures the spectrum of the samples like that of a recording.
-/// The average is an RMS, because a model's magnitudes are RMS values.
+/// Renders parameters at a level, and measures the spectrum of the samples in the same way as the
+/// spectrum of a recording. The average is an RMS, because a model's magnitudes are RMS values.
 ///
 /// # Errors
 /// When the model cannot render, or renders samples that are not finite.

@@ -38,7 +38,7 @@ pub(crate) fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Op
     let all: Vec<(&[Complex<f64>], Span, usize)> = spectra
         .zip(&spans)
         .zip(&of_spans)
-        // A segment that lies in two blocks belongs to none, or odd and even blocks would share
+        // A segment that lies in two blocks is left out. Otherwise, odd and even blocks would share
         // samples.
         .filter_map(|((spectrum, span), block)| Some((spectrum.as_slice(), *span, (*block)?)))
         .collect();
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn lengths_of_blocks() {
-        // Seconds read, blocks, and the length of each.
+        // Seconds read, number of blocks, and length of each block.
         for (seconds, count, block_s) in
             [(0.7, None, 0.0), (0.8, Some(4), 0.2), (2.0, Some(4), 0.5), (10.0, Some(10), 1.0)]
         {

@@ -40,8 +40,8 @@ pub struct RecordedLoop {
     /// RMS of the samples. By default, models that are fitted to the recording are stored with the
     /// same level.
     pub level_rms: f64,
-    /// Number of segments in the loop. The loop uses segments only from the first 30 s of the parts
-    /// of the recording that are read.
+    /// Number of segments in the loop. The loop contains at most the first 30 s of the segments
+    /// that are read.
     pub segments: usize,
 }
 
@@ -63,7 +63,7 @@ impl RecordedLoop {
         let len = frame_len(rate_hz, part.band)?;
         let mut samples = joined(part, len);
         // The level of all segments, because models also have this level. The loop may contain only
-        // the first 30 s of them.
+        // the first 30 s of the segments.
         let level_rms = recorded_level(&spectrum.magnitude);
         set_level(&mut samples, level_rms);
         Ok(Self {
@@ -81,8 +81,8 @@ impl RecordedLoop {
 /// apart.
 fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     let len = rate_hz / GRID_HZ;
-    // The remainder of an infinite or undefined rate is not a number, so the comparison refuses it
-    // too.
+    // The remainder of an infinite or undefined rate is not a number, so the comparison also
+    // refuses such a rate.
     let is_whole = len % 2.0 == 0.0 && rate_hz <= MOST_RATE_HZ;
     if is_whole && len > 2.0 * band.last_bin() as f64 {
         Ok(len as usize)
@@ -122,7 +122,8 @@ fn hann(k: usize, len: usize) -> f64 {
     0.5 - 0.5 * libm::cos(std::f64::consts::TAU * k as f64 / len as f64)
 }
 
-/// Adds half a segment, windowed, at a sample.
+/// Multiplies half a segment by the window, and adds the products to the samples, starting at a
+/// sample.
 fn add(samples: &mut [f64], at: usize, half: &[f64], window: &[f64]) {
     let windowed = half.iter().zip(window).map(|(x, w)| x * w);
     let place = samples.iter_mut().skip(at);
@@ -131,8 +132,8 @@ fn add(samples: &mut [f64], at: usize, half: &[f64], window: &[f64]) {
 
 /// Whether a segment overlaps the one before it, so that both contain the same signal there.
 fn follows(segments: &Segments, i: usize) -> bool {
-    // The step of windows in `segments.rs`. At any other distance the halves do not hold the same
-    // signal.
+    // The distance between windows in `segments.rs`. At any other distance, the two halves do not
+    // contain the same part of the signal.
     let step = segments.len.div_ceil(2);
     let before = i.checked_sub(1).and_then(|k| segments.starts.get(k));
     before.is_some_and(|start| segments.starts.get(i) == Some(&(start + step)))
@@ -143,7 +144,8 @@ fn square_sum(a: f64, b: f64) -> f64 {
 }
 
 fn power_sum(a: f64, b: f64) -> f64 {
-    // Each segment has its own window and this one, both squared in a power.
+    // Each segment is multiplied by two windows: its own and this one. Its power is therefore
+    // multiplied by the squares of both windows.
     (a * a * a * a + b * b * b * b).sqrt()
 }
 

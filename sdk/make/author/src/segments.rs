@@ -13,7 +13,7 @@ pub(crate) const SEGMENTS_PER_S: f64 = 5.0;
 /// Half the length of the moving average used to detect sweeps (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
 /// A finger slides while its friction is at least this fraction of the threshold. A recording has
-/// sweeps only if the friction falls below it between them.
+/// sweeps only if the friction falls below this value between the sweeps.
 const REST_LEVEL: f64 = 0.5;
 /// Longest stretch of sliding that one segment can represent, seconds: ten segments. A sweep across
 /// the paper's samples, 100 mm at 80 mm/s, lasts at most 1.25 s.
@@ -81,8 +81,8 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// How much of the finger's sliding would be represented if one segment were taken from each sweep,
-/// and how much sliding there is in total.
+/// Two durations: the sliding that one segment from each sweep would represent, and the total
+/// sliding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.
@@ -153,11 +153,12 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
         let middles = whole().filter_map(|sweep| middle(*sweep, len, samples));
         middles.collect()
     } else {
-        // Playback joins windows that follow each other by exactly this step, so `recorded.rs`
-        // rounds alike.
+        // Playback joins windows that begin exactly this step apart, so `recorded.rs` must round in
+        // the same way.
         let hop = len.div_ceil(2);
         let last = samples.saturating_sub(len);
-        // For a recording shorter than a segment, `last` is 0 too, and the filter leaves no window.
+        // For a recording shorter than a segment, `last` is also 0, and the filter removes this
+        // window.
         (0..=last).step_by(hop).filter(|_| samples >= len).collect()
     };
     let turned = choice == SegmentChoice::Auto && has_sweeps && !represent_most;
@@ -269,8 +270,8 @@ fn scan(friction: &Friction, shortest: usize) -> Scan {
 /// Returns the start of the segment around a sweep's middle, if the segment lies inside the
 /// recording.
 fn middle(sweep: Sweep, len: usize, samples: usize) -> Option<usize> {
-    // Whole numbers, rounded twice as the specification says, so that other programs read the same
-    // samples.
+    // Uses whole numbers and rounds twice, as the specification says, so that other programs read
+    // the same samples.
     let start = ((sweep.start + sweep.end) / 2).checked_sub(len / 2)?;
     (start + len <= samples).then_some(start)
 }

@@ -114,9 +114,9 @@ pub struct TextureSpectrum {
     /// Repeatability: the expected difference between the spectra of two recordings of this texture
     /// at this condition.
     ///
-    /// To compute the repeatability, htex divides the parts of the recordings that it reads into
-    /// blocks of 0.2 to 1 s, which share no sample. A segment in the middle of a sweep is one
-    /// block. `None` if there are fewer than four blocks, or if half of the blocks are silent.
+    /// To compute the repeatability, htex divides the read parts of the recordings into blocks of
+    /// 0.2 to 1 s, which share no sample. A segment in the middle of a sweep is one block. `None`
+    /// if there are fewer than four blocks, or if half of the blocks are silent.
     pub repeatability: Option<Repeatability>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
@@ -165,8 +165,8 @@ impl TextureSpectrum {
         Ok(Self::from_segments(quantity, band, &all, &spans, averaging))
     }
 
-    /// Averages spectra on the grid of a band. For each spectrum, `spans` contains the part of a
-    /// recording that it comes from.
+    /// Averages spectra on the grid of a band. `spans` contains, for each spectrum, the part of the
+    /// recording from which the spectrum was computed.
     pub(crate) fn from_segments(
         quantity: Quantity,
         band: Band,
@@ -364,7 +364,7 @@ fn inverse_response(
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
-    // A value that is not finite is the better report: the largest value may hide it.
+    // If a value is not finite, this value is reported, because the largest value may hide it.
     let broken = values.iter().map(|h| magnitude(*h)).find(|h| !h.is_finite());
     if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
         return Err(AuthorError::Response { largest });
@@ -440,8 +440,8 @@ impl SegmentReader {
                 Trend::Linear => Cow::Owned(without_line(segment)),
             };
             self.analyzer.analyze(&level, &mut bins).map_err(|_| AuthorError::BandsDiffer)?;
-            // Bins are counted, not hertz: a rate that is no multiple of 5 Hz has bins almost 5 Hz
-            // apart.
+            // The band is selected by the numbers of bins and not by hertz: at a rate that is not a
+            // multiple of 5 Hz, bins are not exactly 5 Hz apart.
             let in_band = self.band.first_bin()..=self.band.last_bin();
             let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
             spectra.push(in_band.map(bin).collect::<Vec<_>>());

@@ -29,8 +29,8 @@ const MIDDLE_HZ: f64 = 250.0;
 /// The speeds of the added conditions, relative to the recorded speed.
 const SPEEDS: [f64; 2] = [1.0 / 3.0, 3.0];
 
-/// Returns conditions at a slower and a faster speed than the recorded ones, if all recordings have
-/// one speed, the contact is unknown and the law leaves frequencies as they are. `parts` are the
+/// Returns one condition below and one above the recorded speed, if all recordings have the same
+/// speed, the contact is unknown, and the law leaves the frequencies unchanged. `parts` are the
 /// segment spectra of each recorded condition.
 ///
 /// # Errors
@@ -65,7 +65,8 @@ pub(crate) fn conditions(
     Ok(all)
 }
 
-/// Returns the speed of all recorded conditions, if they have one and their forces are known.
+/// Returns the speed of the recorded conditions, if all have the same speed and their forces are
+/// known.
 fn only_speed(recorded: &[ConditionSpectrum]) -> Option<f64> {
     let known = |one: &ConditionSpectrum| one.condition.speed_mm_s.zip(one.condition.force_n);
     let (speed, _) = known(recorded.first()?)?;

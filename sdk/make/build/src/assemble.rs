@@ -91,15 +91,15 @@ pub(crate) fn assemble(
     };
     let planned = jobs.par_iter().zip(&plan.textures);
     let textures: Vec<TextureReport> = planned.map(report).collect::<Result<_, BuildError>>()?;
-    // Only the reports stay in memory. The library reads each asset again, because all of them
-    // together may not fit.
+    // Only the reports stay in memory. The library reads each asset again, because all assets
+    // together may not fit into memory.
     let contents = contents(plan, &textures, &kept_textures);
     let kept_names = kept_textures.names();
     let packed = match kept_library(kept, &path, &contents) {
         Some(packed) => packed,
         None => {
-            // Written in the folder of parts, because in the results a killed build would leave the
-            // writer's files.
+            // Written in the folder of parts. In the folder of results, a killed build would leave
+            // the writer's files behind.
             let part = parts.join(&file);
             let mut writer =
                 Writer::create(&dist.path_of(&part)?, &plan.library).map_err(at_place(&library))?;
@@ -215,7 +215,7 @@ struct KeptLibrary {
     blake3: String,
 }
 
-/// Textures of the library before this build that stay in it.
+/// Textures that were in the library before this build and stay in it.
 struct KeptTextures {
     library: Option<Library>,
     /// Hashes by name.
@@ -353,7 +353,8 @@ fn remove_stale(
     let kept: BTreeSet<String> = built(now).collect();
     let before_built: BTreeSet<String> =
         built(&before).chain(now.removed.iter().cloned()).collect();
-    // The earlier report may come from somebody else, and its names become paths.
+    // The earlier report may come from somebody else. Its names are checked because they become
+    // paths.
     for name in before_built.iter().filter(|name| htex_format::library::check_name(name).is_ok()) {
         if !kept.contains(name) {
             dist.remove(&Dist::texture(name))?;

@@ -72,7 +72,7 @@ impl Filter {
                 (Field::License, Some(_)) => filter.matches_stated(entry.license.as_deref()),
                 (Field::Author, Some(_)) => filter.matches_stated(entry.author.as_deref()),
                 (Field::Quantity, Some(quantity)) => filter.pattern.matches_text(quantity.name()),
-                // The index of a library of version 1.0 does not have them.
+                // The index of a library of version 1.0 does not contain these fields.
                 (Field::License | Field::Author | Field::Quantity, None) => {
                     filter.matches_manifest(&entry.name, manifest()?)
                 }

@@ -114,7 +114,7 @@ pub(crate) fn files(
     folder: &Path,
     output: &Path,
 ) -> Result<Vec<PathBuf>, BuildError> {
-    // `file://` is also a local path, whose escapes must be resolved.
+    // A `file://` URI is also a local path, and its escapes must be resolved.
     let location = Location::parse(glob.as_ref())?;
     let path = location.local().map(Path::to_string_lossy).unwrap_or(glob.into());
     let (base, pattern) = split(&path);

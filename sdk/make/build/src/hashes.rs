@@ -14,8 +14,8 @@ use crate::BuildError;
 use crate::remote::{RemoteFiles, is_remote, remote_location};
 use crate::state::StateFolder;
 
-/// A file that changed this shortly before it was hashed may change again without a new time,
-/// because file systems store times in steps of up to 2 s (FAT).
+/// If a file changes within this time before it is hashed, a later change may leave its time the
+/// same, because file systems store times in steps of up to 2 s (FAT).
 const RACY: Duration = Duration::from_secs(2);
 
 /// Largest size of a build's stored hashes, bytes: a few million files.
@@ -112,7 +112,7 @@ pub(crate) struct Hashes {
 
 impl Hashes {
     /// Reads the hashes that an earlier build stored. If the file with the hashes is missing or
-    /// damaged, there are none.
+    /// damaged, starts without hashes.
     pub(crate) fn open(kept: &StateFolder, name: &str, remote: Arc<RemoteFiles>) -> Self {
         let known =
             kept.get(name, MOST_BYTES).and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -206,7 +206,8 @@ pub(crate) fn hash_local(path: &Path) -> io::Result<FileHash> {
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(&mut file)?;
-    // The path is read again and not the open file, so that a replaced file is also noticed.
+    // The stamp is read from the path and not from the open file, so that a replaced file is also
+    // noticed.
     if Stamp::read(path)? != before {
         return Err(changed());
     }

@@ -222,8 +222,8 @@ impl Job {
     ) -> Result<(String, Self), BuildError> {
         let without = PlannedTexture { recordings: Vec::new(), ..texture.clone() };
         let job = Self::new(&without, named, program, hashes)?;
-        // The name is part of the key, because without their recordings unreadable textures may be
-        // equal.
+        // The name is part of the key, because the jobs of two unreadable textures may be equal
+        // without their recordings.
         let key = hash_of(&serde_json::json!(["absent", texture.name, job.key()]));
         Ok((key, job))
     }
@@ -358,8 +358,8 @@ impl Job {
         recordings.chain(&mut self.response).chain(&mut self.plugins)
     }
 
-    /// Refuses a file that is not the one that was hashed. Compares size and times first, and the
-    /// contents if these differ.
+    /// Refuses a file that has changed since it was hashed. Compares size and times first and, if
+    /// these differ, the contents.
     fn check_files(&self) -> Result<(), BuildError> {
         for file in self.files() {
             if Stamp::read(&file.path).reading(&file.path)? == file.hash.stamp {

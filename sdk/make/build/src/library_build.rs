@@ -103,7 +103,8 @@ pub struct Build {
     pending: Vec<usize>,
     /// Keys of the textures with a file that cannot be read.
     unreadable: BTreeSet<String>,
-    /// Textures that an earlier build could not make, with the same recordings and settings, and why.
+    /// Textures that an earlier build could not make from the same recordings with the same
+    /// settings, and the reason for each texture.
     failed_before: Vec<(String, String)>,
     /// Results that are not stored for the next build.
     unkept: BTreeMap<String, JobResult>,
@@ -128,7 +129,7 @@ impl Build {
             RecipeInputs::new(recipe, output, &options.plugins, options.missing())?;
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
-        // Refused before the files are hashed, which may take long.
+        // The build is refused before it hashes the files, because hashing may take long.
         BuildError::refuse_removals(plan.removed(&before), options.most_removed(&plan))?;
         let pool =
             ThreadPoolBuilder::new().num_threads(options.jobs).build().map_err(at_place("jobs"))?;
@@ -295,7 +296,8 @@ impl Build {
                         stopped.store(true, Ordering::Relaxed);
                     }
                 }
-                // `done` is the caller's and may take long, so the lock is released before it.
+                // The caller's function `done` may take long, so the lock is released before the
+                // call.
                 drop(ended);
                 done(job);
             }
@@ -328,8 +330,9 @@ impl Build {
     }
 
     /// Stores the result of a job. If the result cannot be reused by the next build, returns it
-    /// instead. A texture that cannot be made of its recordings cannot be made of them the next time
-    /// either, unless a plugin is involved, which may have had too little time or memory.
+    /// instead. If a texture cannot be made from its recordings, the next build cannot make it
+    /// either. The exception is a texture with a plugin, because the plugin may have had too little
+    /// time or memory.
     fn keep(&self, key: &str, job: &Job, made: JobResult) -> Result<Option<JobResult>, BuildError> {
         let Outcome::Refused(problem) = &made.record.outcome else {
             self.cache.put(key, &made)?;

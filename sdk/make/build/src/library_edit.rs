@@ -97,8 +97,8 @@ impl LibraryEdit {
     ///
     /// # Errors
     /// - Returns an error if a file cannot be read or written.
-    /// - Returns an error if the library lacks a texture that the edit removes or renames, or that
-    ///   the table of metadata names.
+    /// - Returns an error if the edit removes or renames a texture that the library lacks, or if
+    ///   such a texture is in the table of metadata.
     /// - Returns an error if a new name is already the name of another texture in the library.
     /// - Returns an error if a changed texture would not be valid, or states no licence.
     ///
@@ -188,8 +188,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Takes the textures of a library over. `name` returns their new names, and is told whether
-    /// they match the filters.
+    /// Takes over the textures of a library. For each texture, `name` is told whether the texture
+    /// matches the filters, and returns the texture's new name.
     fn take(
         &mut self,
         path: &Path,
@@ -260,7 +260,7 @@ impl Run<'_> {
         kept: &mut [Kept],
     ) -> Result<(), BuildError> {
         let edit = self.edit;
-        // Metadata change no spectrum. An index of version 1.0 has none.
+        // Metadata change no spectrum. An index of version 1.0 contains no descriptions.
         let is_described = library.index().minor_version() > 0;
         let descriptions = batch.iter().map(|texture| {
             let known = is_described.then(|| library.description(&texture.entry)).transpose();
@@ -290,7 +290,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Adds the additions, and returns how many textures were added.
+    /// Adds the requested textures and libraries, and returns how many textures were added.
     fn add(&mut self) -> Result<usize, BuildError> {
         let mut count = 0;
         for addition in &self.edit.add {
@@ -361,8 +361,8 @@ impl LibraryEdit {
         Ok(self.filters.iter().all(|filter| filter.matches_manifest(name, &manifest)))
     }
 
-    /// Returns a texture with other metadata; `None` if it has them already. `known` is its
-    /// description, if the library has it.
+    /// Returns a texture with new metadata; `None` if the texture already has this metadata.
+    /// `known` is the texture's description, if the library contains it.
     fn edited(
         &self,
         bytes: &[u8],
@@ -387,7 +387,8 @@ impl LibraryEdit {
                 }
             }
         }
-        // What the table says of one texture replaces what is said of all.
+        // The table's metadata for one texture replace the metadata that are given for all
+        // textures.
         if let Some(row) = row {
             row.apply(&mut asset.manifest);
         }

@@ -61,7 +61,7 @@ impl LibraryMerge {
         let mut hashes: BTreeMap<String, [u8; 32]> = BTreeMap::new();
         let mut conflicts = Vec::new();
         let mut libraries: Vec<_> = self.libraries.iter().collect();
-        // The first texture of a name is taken.
+        // Of several textures with the same name, the first one is taken.
         if self.on_conflict == OnConflict::Last {
             libraries.reverse();
         }

@@ -49,7 +49,7 @@ impl Job {
         Ok(JobResult { record, asset: bytes, sound })
     }
 
-    /// Imports the texture that a file of another format states.
+    /// Imports the texture that a file of another format contains.
     fn imported(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
         let [recording] = &self.recordings[..] else {
             return Err("a texture that is stated has one file".into());
@@ -141,7 +141,7 @@ impl Job {
         }
     }
 
-    /// Returns the settings that state what a file of another format does not.
+    /// Returns the settings for the values that a file of another format does not contain.
     fn physical(&self, recording: &JobRecording) -> Physical {
         Physical {
             full_scale: self.signal.full_scale,

@@ -77,7 +77,7 @@ impl BuildsMerge {
                 let name = format!("{}{}", build.prefix, texture.name);
                 let is_built = texture.status == Status::Built;
                 let there = textures.get(&name).map(|there: &TextureReport| there.status);
-                // What one build left out, another one may have.
+                // A texture that one build left out may be in another build.
                 if there == Some(Status::Built) || there.is_some() && !is_built {
                     continue;
                 }
@@ -128,7 +128,7 @@ impl Built {
             BuildError::at_place(place.display(), "no build has written this folder; name one")
         })?;
         let report: Report = serde_json::from_slice(&bytes).map_err(at_place(place.display()))?;
-        // The report may come from somebody else, so its file must lie in the folder.
+        // The report may come from somebody else, so the file that it names must lie in the folder.
         let file = &report.library.file;
         if file.contains(['/', '\\']) || !file.ends_with(".htexlib") {
             let problem = format!("{file:?} is no name of a library");
@@ -138,7 +138,7 @@ impl Built {
         Ok(Self { dist, library, prefix: prefix.to_owned(), report })
     }
 
-    /// Copies the files of a texture, which gets a name.
+    /// Copies the files of a texture under a new name.
     fn copy(&self, texture: &str, name: &str, to: &Dist) -> Result<(), BuildError> {
         for checked in [texture, name] {
             htex_format::library::check_name(checked).map_err(at_place(checked))?;

@@ -64,12 +64,12 @@ impl MetadataTable {
         Ok(Self { rows })
     }
 
-    /// Takes the row of a texture out.
+    /// Takes out the row of a texture.
     pub(crate) fn take(&mut self, name: &str) -> Option<Metadata> {
         self.rows.remove(name)
     }
 
-    /// Returns a name that was not taken out.
+    /// Returns the name of a row that was not taken out.
     pub(crate) fn unused(&self) -> Option<&str> {
         self.rows.keys().next().map(String::as_str)
     }

@@ -73,7 +73,7 @@ impl PlannedTexture {
 }
 
 impl Plan {
-    /// Returns those of `names` that no planned texture has, and that the library loses.
+    /// Returns the names in `names` that no planned texture has and that the library loses.
     pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
         match self.missing {
             MissingTextures::Remove => self.unplanned(names),
@@ -81,7 +81,7 @@ impl Plan {
         }
     }
 
-    /// Returns those of `names` that no planned texture has, and that stay in the library.
+    /// Returns the names in `names` that no planned texture has and that stay in the library.
     pub(crate) fn kept(&self, names: &BTreeSet<String>) -> Vec<String> {
         match self.missing {
             MissingTextures::Remove => Vec::new(),

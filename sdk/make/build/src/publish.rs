@@ -46,7 +46,7 @@ pub struct Destination {
     remote: Option<Location>,
 }
 
-/// What was copied, by its path in the folder of the results.
+/// The copied files, by their paths in the folder of the results.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct PublishedFiles {
     /// The URI of the folder.
@@ -169,7 +169,7 @@ impl<'a> Publishing<'a> {
             folder,
             to,
             storage: Storage::from_environment()?,
-            // What was copied to another URI says nothing about this one.
+            // A list of copies to another URI says nothing about this URI.
             before: before.filter(|before| before.to == to.to_string()).unwrap_or_default(),
             kept,
         })
@@ -180,8 +180,8 @@ impl<'a> Publishing<'a> {
         let here = self.here()?;
         let is_there = |name: &str, blake3: &str| {
             let copied = self.before.files.get(name);
-            // The version there must also be the one that was copied: somebody may have replaced
-            // the file.
+            // The version at the URI must also be the version that was copied, because somebody may
+            // have replaced the file.
             copied.is_some_and(|copied| {
                 copied.blake3 == blake3 && there.get(name) == Some(&copied.there)
             })
@@ -200,7 +200,8 @@ impl<'a> Publishing<'a> {
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
         last.iter().try_for_each(|name| self.copy(name))?;
         let copied = wanted.len();
-        // Only after the new report is there, which no longer names these files.
+        // The stale files are removed only after the new report, which no longer names them, is at
+        // the URI.
         self.remove_stale(&here, &there)?;
         self.keep(here)?;
         Ok(copied)
@@ -255,9 +256,9 @@ impl<'a> Publishing<'a> {
         Ok(())
     }
 
-    /// Stores what is now at the URI for the next build.
+    /// Stores, for the next build, which files are now at the URI.
     fn keep(&self, here: BTreeMap<String, String>) -> Result<(), BuildError> {
-        // Listed again, because each copy has a new version.
+        // The files are listed again, because each copy has a new version.
         let there = self.there()?;
         let files = here.into_iter().filter_map(|(name, blake3)| {
             let there = *there.get(&name)?;

@@ -238,7 +238,7 @@ impl Recipe {
     ///
     /// # Errors
     /// Returns an error if the text is not TOML, has keys or values that a recipe cannot have, or
-    /// lists a code in `gates.deny` that no finding has.
+    /// lists in `gates.deny` a code that no finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;

@@ -205,7 +205,8 @@ impl RemoteFiles {
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, file_name(location)?);
         let folder = copies.own.path().join(&copies.inside);
-        // In the folder of the copies, so that it only needs a new name at the end.
+        // The file is written in the folder of the copies, so that at the end it only needs a new
+        // name.
         let part =
             tempfile::Builder::new().suffix(".part").tempfile_in(&folder).writing(&folder)?;
         let file = part.reopen().writing(&folder)?;

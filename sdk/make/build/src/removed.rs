@@ -43,11 +43,11 @@ pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
     built.map(|texture| texture.name.clone()).chain(report.kept.iter().cloned())
 }
 
-/// Opens the library that the last build wrote. If the file is missing or damaged, there is none,
-/// and the build writes the file again.
+/// Opens the library that the last build wrote. If the file is missing or damaged, there is no
+/// library, and the build writes the file again.
 pub(crate) fn library_before(dist: &Dist, library: &str) -> Option<Library> {
     let file = previous(dist).map(|report| report.library.file);
-    // The report may come from somebody else, so its file must lie in this folder.
+    // The report may come from somebody else, so the file that it names must lie in this folder.
     let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
     let file = file.filter(is_name).unwrap_or_else(|| format!("{library}.htexlib"));
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());

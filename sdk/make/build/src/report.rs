@@ -35,8 +35,8 @@ pub struct Report {
     /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Names of textures that an earlier build made and the recipe no longer makes, but that stay
-    /// unchanged in the library.
+    /// Names of textures that stay unchanged in the library: an earlier build made them, but the
+    /// recipe no longer makes them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<String>,
     /// For each model (by id), counts of textures in the library. `below_difference_threshold`
@@ -208,7 +208,7 @@ impl AssetReport {
     fn new(made: &JobResult, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
         let conditions = || manifest.conditions.iter().filter(|c| c.is_recorded());
-        // A representation that a file of another format states has no error.
+        // A representation that was imported from a file of another format has no error.
         let errors = manifest.representations.iter().filter_map(|representation| {
             let qualities = representation.at.iter().filter_map(|at| at.quality.as_ref());
             let errors = qualities.filter_map(|q| q.get(Measure::NineBand));

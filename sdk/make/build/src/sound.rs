@@ -6,8 +6,8 @@ use std::io::Cursor;
 use htex_host::Registry;
 use htex_play::{Texture, VoiceOptions};
 
-/// Sample rate of the sound, hertz. It exceeds twice the band's upper edge (1000 Hz), browsers play
-/// it, and files stay small.
+/// Sample rate of the sound, hertz. This rate is above twice the band's upper edge (1000 Hz),
+/// browsers can play it, and files stay small.
 const RATE_HZ: u32 = 8_000;
 /// Length of the sound, samples.
 const SAMPLES: usize = RATE_HZ as usize;

@@ -295,7 +295,7 @@ fn identifier(name: &str) -> String {
         }
         identifier.push_str(rest);
     }
-    // A Kotlin identifier must not begin with a digit. It is also empty if the name has only
+    // A Kotlin identifier must not begin with a digit. The identifier is empty if the name has only
     // letters of other scripts.
     if identifier.starts_with(|c: char| c.is_ascii_alphabetic()) {
         identifier

@@ -108,8 +108,8 @@ fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<u
     (most > tolerance).then_some(at)
 }
 
-/// Returns the value of a curve at a time or, if `before` is true, just before that time. Both
-/// differ if two points have this time.
+/// Returns the value of a curve at a time or, if `before` is true, just before that time. The two
+/// values differ if two points have this time.
 pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
     let first_here = curve.partition_point(|point| point.time_s < time_s);
     match curve.get(first_here) {

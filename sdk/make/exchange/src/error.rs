@@ -190,7 +190,7 @@ fn unused(
     format!("{format}: its {way} takes no {setting}; leave it out{taken}")
 }
 
-/// Makes the error for a name that nothing has. `there` are the names that exist.
+/// Makes the error for an unknown name. `there` are the names that exist.
 pub(crate) fn unknown_name<'a>(
     what: &'static str,
     wanted: &str,

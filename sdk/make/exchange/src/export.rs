@@ -196,7 +196,8 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, Exch
     Ok(exported)
 }
 
-/// Returns a note on how the asset plays the motion, if the motion is outside the recorded ones.
+/// Returns a note on how the asset plays the motion, if the motion is outside the range of the
+/// recorded motions.
 fn beyond(asset: &Texture, export: &Export<'_>) -> Result<Option<String>, ExchangeError> {
     let Path::Condition(Some(motion)) = export.path else {
         return Ok(None);

@@ -79,7 +79,8 @@ pub enum Writes {
     Map,
 }
 
-/// A function that writes a vibration, which an asset or a scene has played, as a file of a format.
+/// A function that writes a vibration as a file of a format. An asset or a scene has played this
+/// vibration.
 pub type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
 type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 

@@ -13,8 +13,8 @@ use crate::stroke::Stroke;
 
 /// Number of bands in the envelope.
 pub(crate) const BANDS: usize = 14;
-/// Largest number of samples of an export on a machine of 32 bits, such as a WASM module, whose
-/// memory holds no more.
+/// Largest number of samples of an export on a 32-bit machine, such as a WASM module. The memory of
+/// such a machine cannot hold more samples.
 const MOST_SAMPLES: usize = 1 << 24;
 /// Time that is played before the first exported sample, so that the analysis windows are full,
 /// seconds.
@@ -173,8 +173,8 @@ impl Playing<'_> {
         })
     }
 
-    /// Returns what is played before the first sample, and the samples. Both are rendered in
-    /// blocks.
+    /// Returns the samples that are played before the first exported sample, and the exported
+    /// samples. Both are rendered in blocks.
     fn samples(
         &self,
         rate_hz: f64,
@@ -270,7 +270,7 @@ impl Heard {
     }
 }
 
-/// Returns the acceleration, m/s², that feels like a value of 1 of a quantity at a frequency: both
+/// Returns the acceleration, m/s², that feels like a quantity with the value 1 at a frequency. Both
 /// displace the skin by the same amount.
 pub(crate) fn acceleration_of(quantity: Quantity, hertz: f64) -> f64 {
     let listener = Listener::default();

@@ -99,8 +99,8 @@ impl Pattern {
             else {
                 break;
             };
-            // The exponent is at least 1, because the 0 of a default pattern would turn silence
-            // into the strongest vibration.
+            // The exponent is at least 1, because the exponent 0 of a default pattern would turn
+            // silence into the strongest vibration.
             *sample += libm::pow(level, f64::from(self.exponent.max(1))) * libm::sin(phase);
             // The phase is added up, so that the sine stays continuous while its frequency changes.
             phase += std::f64::consts::TAU * hertz / rate_hz;

@@ -5,8 +5,8 @@
 //! threshold in this band. The sum of these quotients over all bands measures how strongly a finger
 //! feels the block. The tone's level is the level at which a finger feels the tone as strongly as
 //! the block. It follows from the detection threshold at the tone's frequency. The tone's frequency
-//! is the geometric mean of the bands' frequencies, limited to the actuator's range. Each band has
-//! its share of the sum as its weight in this mean. If the actuator is too weak at this frequency,
+//! is the geometric mean of the bands' frequencies, limited to the actuator's range. In this mean,
+//! the weight of each band is its share of the sum. If the actuator is too weak at this frequency,
 //! the export moves the frequency towards the actuator's resonance until the actuator is strong
 //! enough. If the actuator is too weak at every frequency, it plays the strongest tone that it can
 //! produce, and the export counts this block as too strong for the actuator. **Samples.** The
@@ -103,8 +103,8 @@ struct Tone {
     is_limited: bool,
 }
 
-/// Returns the tone of a resonant actuator. Its frequency is the one nearest to the wanted
-/// frequency at which the actuator is strong enough.
+/// Returns the tone of a resonant actuator. Of the frequencies at which the actuator is strong
+/// enough, the tone has the frequency nearest to the wanted one.
 fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let resonance_hz = profile.resonance_hz.value;
     let wanted_hz = if wanted_hz > 0.0 {
@@ -127,7 +127,8 @@ fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     enough.unwrap_or(Tone { amplitude: 1.0, hertz: resonance_hz, is_limited: true })
 }
 
-/// Returns the tone of a motor: the smallest level at which the motor is felt at least as strongly.
+/// Returns the tone of a motor: the smallest level at which the motor is felt at least as strongly
+/// as `strength`.
 fn rotating(profile: &Profile, strength: f64) -> Tone {
     let (low_hz, high_hz) = (profile.low_hz.value, profile.high_hz.value);
     let felt = |hertz: f64| profile.strongest_at(hertz) / threshold(Quantity::Acceleration, hertz);
@@ -157,8 +158,8 @@ fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     curve
 }
 
-/// Returns what an actuator plays of a file's pattern. In a motor, the frequency follows the level,
-/// and the strength follows the square of the level.
+/// Returns the vibration that an actuator plays from a file's pattern. In a motor, the frequency
+/// follows the level, and the strength follows the square of the level.
 pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     if profile.kind == Kind::Resonant {
         return pattern;

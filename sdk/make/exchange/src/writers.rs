@@ -19,11 +19,11 @@ use htex_format::{Manifest, Quantity};
 const MANY: usize = 4_000;
 /// Number of tones in a vectorial file. It is the largest number of bands in a channel of level 1.
 const TONES: usize = 7;
-/// Tolerance when curves are simplified: points that are closer to the line between the remaining
-/// points are left out.
+/// Tolerance when curves are simplified: a point is left out if it is closer than this to the line
+/// between the remaining points.
 const TOLERANCE: f64 = 1e-3;
-/// Level above the detection threshold, decibels, for which the intensity 0 of a basic envelope
-/// stands (documentation of `VibrationEffect.BasicEnvelopeBuilder`).
+/// The intensity 0 of a basic envelope stands for this level above the detection threshold,
+/// decibels (documentation of `VibrationEffect.BasicEnvelopeBuilder`).
 const LEAST_SL_DB: f64 = 10.0;
 
 pub(crate) fn haptic(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {

@@ -21,7 +21,8 @@ const SHORTEST_S: f64 = 1e-9;
 /// the rows.
 const GAP_S: f64 = 0.2;
 
-/// Adds the tracked speed to a recording and cuts the recording to the time that both cover.
+/// Adds the tracked speed to a recording, and cuts the recording to the time that the tracker also
+/// covers.
 pub(crate) fn follow(
     tracker: &Tracker,
     assembled: TimedRecording,
@@ -179,7 +180,7 @@ impl Motion {
             Path::Position(coordinates) => coordinates,
         };
         let start_s = self.first_s();
-        // A clock that counts from 1970 has so large numbers that products of them would lose the
+        // A clock that counts from 1970 has such large numbers that their products would lose the
         // digits below a millisecond.
         let from_start: Vec<f64> = self.time_s.iter().map(|t| t - start_s).collect();
         let along = |position: &Vec<f64>| {

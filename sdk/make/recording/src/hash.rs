@@ -58,7 +58,7 @@ struct Version {
 }
 
 impl Version {
-    /// `None` if the path is not a regular file, such as a pipe, which can be read only once.
+    /// `None` if the path is not a regular file. For example, a pipe can be read only once.
     fn read(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok()?;
         metadata.is_file().then(|| Self::of_metadata(&metadata))

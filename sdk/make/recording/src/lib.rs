@@ -89,8 +89,8 @@ use input::{InputFile, file_name};
 /// See [`ReadError`]. Every error names the file. If the problem is at one place in the file, the
 /// error also names this place.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    // Before the file is read, so that a change during the reading makes the hash unknown instead
-    // of wrong.
+    // This call comes before the file is read. If the file changes during the reading, the hash is
+    // then unknown instead of wrong.
     let file = RecordedFile::of_path(path);
     let recording = read(path, || InputFile::file(path), options)?;
     Ok(Recording { file, ..recording })

@@ -170,7 +170,7 @@ impl Recording {
     /// exceeds 1e12 in magnitude.
     pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
         check("normal force", &normal_n, self.samples())?;
-        // The sum decides and not the first sample, because noise may make some samples negative.
+        // The sum decides, not the first sample, because noise may make some samples negative.
         if normal_n.iter().sum::<f64>() < 0.0 {
             normal_n.iter_mut().for_each(|force| *force = -*force);
         }

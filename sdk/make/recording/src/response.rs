@@ -48,8 +48,8 @@ impl SetupResponse {
     /// ```
     #[must_use]
     pub fn value_at(&self, frequency_hz: f64) -> (f64, f64) {
-        // Magnitude and phase are interpolated and not the complex numbers, whose mean is too small
-        // where the phase turns between two points.
+        // Magnitude and phase are interpolated instead of the complex numbers, whose mean is too
+        // small if the phase changes between two points.
         let above = self.frequency_hz.partition_point(|f| *f <= frequency_hz);
         let last = self.frequency_hz.len().saturating_sub(1);
         let (low, high) = (above.saturating_sub(1), above.min(last));

@@ -63,7 +63,7 @@ impl Columns {
     }
 
     /// Returns the columns with exactly this name. If there are none, returns columns with the name
-    /// in another case, or else columns whose last part it is.
+    /// in another case, or else columns whose last part is this name.
     pub(crate) fn by_name(&self, name: &str) -> Vec<usize> {
         let all = 0..self.width();
         let exact = |column: &usize| self.names[*column] == name;
@@ -76,7 +76,7 @@ impl Columns {
         found.find(|columns| !columns.is_empty()).unwrap_or_default()
     }
 
-    /// Returns the problem that it is unclear which roles these columns have.
+    /// Returns the problem of columns whose roles are unclear.
     pub(crate) fn refuse(&self, problem: String) -> ReadProblem {
         ReadProblem::Columns { problem, columns: self.list() }
     }

@@ -7,7 +7,8 @@ use htex_format::{AtCondition, Condition, Law};
 
 use crate::Motion;
 
-/// Distance from 1 within which the ratio of a motion to the nearest recorded value is 1.
+/// If the ratio of a motion to the nearest recorded value differs from 1 by at most this number,
+/// the ratio counts as 1.
 const SAME_RATIO: f64 = 1e-9;
 
 /// Lowest speed at which the finger slides, mm/s. Below this speed, the texture is silent.
@@ -134,8 +135,8 @@ impl Interval {
     /// recorded values are unknown, or if the nearest value is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
         let ratio = if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 };
-        // A nearest value that was computed can differ by rounding, which would move a spectrum
-        // beyond the edge of its band.
+        // A computed nearest value can have a rounding error. Scaling by this error would move a
+        // spectrum beyond the edge of its band.
         if (ratio - 1.0).abs() <= SAME_RATIO { 1.0 } else { ratio }
     }
 }
@@ -248,7 +249,7 @@ impl Scaling {
     /// No scaling: the texture as recorded.
     pub const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 
-    /// Returns the factors, but replaces the factor of each effect that is switched off by 1.
+    /// Returns the factors, with 1 in place of the factor of each effect that is switched off.
     pub(crate) fn with(self, effects: Effects) -> Self {
         let on = |is_on: bool, factor: f64| if is_on { factor } else { 1.0 };
         Self {

@@ -127,8 +127,8 @@ impl Follow {
         });
         let (held, lost) = block.split_at_mut(held);
         self.contact.apply(held);
-        // The hold may end inside a block. The fade begins at that very sample, so that samples do
-        // not depend on the sizes of blocks.
+        // The hold may end inside a block. The fade begins at the sample at which the hold ends, so
+        // that samples do not depend on the sizes of blocks.
         if !lost.is_empty() {
             self.contact.set(0.0);
             self.contact.apply(lost);

@@ -197,7 +197,7 @@ impl Mesh {
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = face.places;
         // For their common edge, two triangles compute areas of equal size and opposite sign. So
-        // rounding cannot put a motion outside both.
+        // rounding cannot put a motion outside both triangles.
         let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
         if areas.iter().any(|area| *area < 0.0) {
             return None;

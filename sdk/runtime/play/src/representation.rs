@@ -210,7 +210,8 @@ impl<'a> Representation<'a> {
 
     /// Returns the magnitudes at a motion as they were recorded, or interpolated between
     /// recordings. Unlike [`Self::magnitude`], this function does not apply the asset's scaling
-    /// law. It also does not set the magnitudes to 0 if the finger does not slide at this motion.
+    /// law. It also returns these magnitudes, and not 0, if the finger does not slide at this
+    /// motion.
     ///
     /// # Errors
     /// Returns the same errors as [`Self::voice`].

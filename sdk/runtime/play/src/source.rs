@@ -115,8 +115,8 @@ impl SampleSource {
         self.motion
     }
 
-    /// Returns the magnitudes of the texture at a motion, when it is read at `ratio` times its
-    /// recorded speed and played at a level.
+    /// Returns the magnitudes of the texture at a motion, if the texture is read at `ratio` times
+    /// its recorded speed and played at a level.
     pub(crate) fn magnitude(
         &self,
         motion: Motion,

@@ -17,8 +17,8 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// Returns the place that the finger reaches `way_mm` after `place_mm`, if it keeps the
-    /// direction from the previous place to this one.
+    /// Returns the place of the finger when it has moved by `way_mm` from `place_mm`, in the
+    /// direction from the previous place to `place_mm`.
     pub(crate) fn extrapolate(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);

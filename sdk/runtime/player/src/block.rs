@@ -67,8 +67,8 @@ pub enum BlockKind {
     /// Sinusoids.
     Tones {
         count: usize,
-        /// Whether the phases are random, determined by the seed. Otherwise all sinusoids start at
-        /// their crests.
+        /// Whether the phases are random. The seed determines random phases. Otherwise all
+        /// sinusoids start at their crests.
         random_phase: bool,
     },
 }
@@ -177,7 +177,8 @@ impl<'a> Block<'a> {
             Some((before, before.get(HEADER..)?, u32::from_le_bytes(*sum)))
         });
         let (summed, payload, sum) = payload.ok_or(OpenError::Length)?;
-        // Before the other numbers of the header are used, so that damage is reported as damage.
+        // The checksum is tested before the other numbers of the header are used, so that damage is
+        // reported as damage.
         if crc32(summed) != sum {
             return Err(OpenError::Checksum);
         }
@@ -438,8 +439,8 @@ impl<'a> Block<'a> {
         self.integers.get(condition * self.filters() + filter)
     }
 
-    /// Returns the factor that turns an integer weight times an integer coefficient into a
-    /// coefficient.
+    /// Returns the factor that converts the product of an integer weight and an integer coefficient
+    /// to a coefficient.
     pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
         self.numbers.get(filter)
     }

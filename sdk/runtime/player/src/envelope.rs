@@ -24,13 +24,14 @@ struct Line {
     step: u32,
 }
 
-/// The envelope. Its values are computed once every few samples, and interpolated between.
+/// The envelope. Its values are computed only once every few samples, and interpolated for the
+/// samples in between.
 #[derive(Debug, Clone)]
 pub(crate) struct Envelope {
     lines: [[Line; LINES]; 2],
     /// The values before and after the present sample.
     between: [f32; 2],
-    /// Number of samples since the value before.
+    /// Number of samples since the previous value.
     count: u16,
 }
 

@@ -33,8 +33,8 @@ impl Weights {
     }
 }
 
-/// Returns the index of the value below a number on an ascending axis, and the position between
-/// this value and the next one, from 0 to 1.
+/// Finds the place of a number on an ascending axis. Returns the index of the value below the
+/// number, and the position of the number between this value and the next one, from 0 to 1.
 fn place(axis: Words<'_>, value: f32) -> (usize, f32) {
     let above = axis.iter().take_while(|x| *x <= value).count();
     if above == 0 {

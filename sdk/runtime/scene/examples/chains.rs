@@ -261,7 +261,8 @@ fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
     for count in [1, 1_000, 5_000, 10_000] {
         while many.len() < count {
             let mut voice = make(many.len() as u64);
-            // Each voice starts at a different point of the time in which it computes one frame.
+            // The voices start at different points of the period in which each voice computes one
+            // frame.
             voice(&mut vec![0.0; BLOCK * (many.len() * 61 % FRAME_BLOCKS)]);
             many.push(voice);
         }

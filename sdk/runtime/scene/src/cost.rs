@@ -24,9 +24,8 @@ pub struct Costs {
     /// although the stage changes no samples. Interpolation and crossfades are not listed and count
     /// as 0.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Two times per sample that the renderer itself takes, nanoseconds. The first time applies to
-    /// a scene in which nothing changes. The second time applies to a scene whose motion is read
-    /// before every block.
+    /// Times that the renderer itself takes per sample, nanoseconds: first for a scene in which
+    /// nothing changes, then for a scene whose motion is read before every block.
     pub renderer_ns: [f64; 2],
     /// Cost of the compensation filter, when a resampler requests short blocks from it.
     pub compensation: FilterCost,

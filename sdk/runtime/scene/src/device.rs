@@ -285,8 +285,8 @@ pub(crate) fn device_quantity(held: Held) -> Quantity {
     }
 }
 
-/// Returns the reason why a device cannot play assets of a quantity with this gain or without a
-/// gain. Returns `None` if the device can play them.
+/// Returns the reason why a device cannot play assets of a quantity, with the given gain or, if
+/// there is none, without a gain. Returns `None` if the device can play them.
 ///
 /// Two kinds of device are special. An electrovibration display adds a lateral force, so it plays
 /// assets of lateral forces without a gain. A sound device plays every quantity, because the

@@ -294,8 +294,8 @@ fn load(
 ) -> Option<Scene> {
     let assets = open_assets(&file, place, around, findings);
     let trace = open_trace(&file, place, findings);
-    // The override comes before the response is opened, because choosing another adapter drops the
-    // scene's response.
+    // The override is applied before the response is opened, because choosing another adapter drops
+    // the scene's response.
     match around.devices {
         Some(_) => device.0.apply(&mut file.device),
         None => file.device = DeviceChoice::default(),
@@ -485,8 +485,8 @@ fn open_response(
     opened(open, place, path, rules, "/device/response", findings)
 }
 
-/// Reports a response that is zero in the textures' band, and warns about what its compensation
-/// amplifies.
+/// Reports a response that is zero in the textures' band, and warns about the frequencies that its
+/// compensation amplifies.
 fn check_response(
     response: &Response,
     assets: &[Texture],

@@ -113,7 +113,7 @@ impl Course {
 fn first_way(trace: &Trace) -> [f64; 2] {
     let moving = trace.t_s.iter().map(|t| trace.point_at(*t));
     let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);
-    // Only the sign of the direction's product with other velocities matters, so it is not
-    // normalised.
+    // Only the sign of the product of this direction and another velocity matters, so the direction
+    // is not normalised.
     sliding.next().map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
 }

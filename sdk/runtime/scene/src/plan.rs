@@ -228,8 +228,8 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     notes
 }
 
-/// Cost of a stage per frame of the device, nanoseconds: if the stage is needed, and if it changes
-/// nothing.
+/// Two costs of a stage, nanoseconds per frame of the device: one if the stage is needed, and one
+/// if it changes nothing.
 struct Ns {
     needed: f64,
     neutral: f64,
@@ -303,8 +303,8 @@ impl<'a> Draft<'a> {
     /// Adds the stages of one surface, at its model's rate.
     fn surface(&mut self, played: &PlayedSurface) -> Result<(), SceneError> {
         let surface = Some(played.surface);
-        // A voice is rendered only while its surface is touched. A constant frequency ratio reads
-        // it at another speed.
+        // A voice is rendered only while its surface is touched. If there is a constant frequency
+        // ratio, the voice is read at another speed.
         let per_frame = played.share * played.rate_hz * played.fixed_ratio / self.required.rate_hz;
         let model_ns = self.costs.model(&played.model) * per_frame;
         self.push("synthesis", surface, always(played), played.rate_hz, model_ns);

@@ -52,8 +52,8 @@ pub(crate) fn choose(
 }
 
 /// Returns the reference level for levels that are not normalised, in the assets' unit. If the
-/// scene does not set it, it is the level of the strongest representation of all touched surfaces.
-/// This does not depend on which representations play.
+/// scene does not set the reference level, it is the level of the strongest representation of all
+/// touched surfaces. It does not depend on which representations play.
 pub(crate) fn reference_rms(scene: &Scene, required: &Requirements) -> f64 {
     if let Some(given_n) = scene.file.device.reference_rms {
         return given_n;
@@ -137,8 +137,8 @@ impl Candidates {
     }
 }
 
-/// Chooses the representations with the smallest error bound for which the fastest choice meets the
-/// time limit.
+/// Finds the smallest error bound for which the fastest choice of representations meets the time
+/// limit, and returns the representations for this bound.
 fn nearest_within(
     all: &[Candidates],
     error_db: Option<f64>,

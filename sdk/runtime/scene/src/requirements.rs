@@ -90,7 +90,7 @@ pub(crate) struct Requirements {
     pub(crate) pitch: f64,
     pub(crate) seed: u64,
     pub(crate) compensation: Option<Inverse>,
-    /// Whether the scene switches the fluctuation of its textures on.
+    /// Whether the scene switches on the fluctuation of its textures.
     pub(crate) fluctuation: bool,
     /// How each surface is touched.
     pub(crate) touches: Vec<Touch>,

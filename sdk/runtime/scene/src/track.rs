@@ -127,13 +127,14 @@ impl Track {
     }
 
     /// While the surface is audible, passes motion, position and place to a model that follows the
-    /// motion itself. Position and time are in the voice's time, so both are multiplied by the
-    /// pitch. The place on the surface stays unchanged.
+    /// motion itself. Position and time are on the voice's time scale, so both are multiplied by
+    /// the pitch. The place on the surface stays unchanged.
     pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;
         };
-        // The voice stood still while the surface was silent, so its time is behind the scene's.
+        // The voice was not rendered while the surface was silent, so its time is behind the
+        // scene's time.
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
         let motion = Motion::new(finger.point.speed_mm_s, finger.force_n)
             .with_position_mm(finger.point.position_mm * follower.pitch)

@@ -169,7 +169,7 @@ fn root(processor: &Processor) -> Result<PathBuf> {
         run(debootstrap.arg(&root).arg("http://deb.debian.org/debian")).context(
             "as root, with the package debootstrap; another processor also needs qemu-user-static and binfmt-support",
         )?;
-        // Written last, so that a root whose making was interrupted does not count as made.
+        // This file is written last, so that an incomplete root does not count as made.
         fs::write(is_made, "")?;
     }
     Ok(root)

@@ -68,15 +68,15 @@ pub(crate) struct Stopper {
     handle: Handle,
 }
 
-// SAFETY: NI-DAQmx may be called from any thread, also to stop a task in which another thread has a
-// call.
+// SAFETY: NI-DAQmx may be called from any thread, also to stop a task while another thread is in a
+// call of this task.
 unsafe impl Send for Stopper {}
 
 impl Stopper {
     /// Stops the task. The task outputs nothing more, but its last voltage stays at the output.
     pub(crate) fn stop(&self) {
-        // SAFETY: a handle of this driver, which checks the handles that it is given; whoever
-        // clears the task drops this before.
+        // SAFETY: the handle comes from this driver, and the driver checks the handles that it is
+        // given. The owner of the task drops this value before it clears the task.
         unsafe { (self.driver.table.stop_task)(self.handle) };
     }
 }

@@ -53,7 +53,7 @@ impl Table {
         if code >= 0 {
             return Ok(());
         }
-        // SAFETY: both are given a buffer and its length.
+        // SAFETY: both functions get a buffer and its length.
         let details = filled(|to, space| unsafe { (self.get_error_details)(to, space) });
         // The details of the last call say more than the general text of a code.
         let words = details.filter(|text| !text.is_empty()).or_else(|| {

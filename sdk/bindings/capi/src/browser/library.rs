@@ -59,7 +59,7 @@ fn absent(name: &str) -> Failure {
 pub unsafe extern "C" fn htex_index_new(out: *mut u64) -> htex_status {
     guarded(|| {
         let opening = Opening::new(Limits::default());
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = INDEXES.insert(State::Opening(Some(opening)))?;
         Ok(())
     })
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_st
             State::Opening(Some(opening)) => opening.wanted(),
             _ => 0..0,
         };
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         unsafe { write_range(&wanted, out) }
     })
 }
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn htex_index_give(
 ) -> htex_status {
     guarded(|| {
         let mut state = INDEXES.exclusive(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let bytes = unsafe { slice(bytes, len) }?;
         let State::Opening(opening) = &mut *state else {
             return Err(Failure::argument("the library is open already"));
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn htex_index_json(
             "count": index.len(),
             "pages": index.leaves(),
         });
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&json.to_string(), out, capacity, length) }
     })
 }
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn htex_index_page_of(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (name, out) = unsafe { (needed_text(name)?, place(out)?) };
         let page = state.index()?.leaf_of(name);
         *out = page.ok_or_else(|| absent(name))? as u32;
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn htex_index_page_range(
             .index()?
             .leaf_range(page as usize)
             .ok_or(Failure::argument("no page of this index"))?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         unsafe { write_range(&range, out) }
     })
 }
@@ -182,9 +182,9 @@ pub unsafe extern "C" fn htex_index_read_page(
 ) -> htex_status {
     guarded(|| {
         let mut state = INDEXES.exclusive(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let bytes = unsafe { slice(bytes, len) }?;
-        // Read first, so that the old page stays in place after an error.
+        // The new page is read first, so that the old page stays in place after an error.
         let read = state.index()?.read_leaf(page as usize, bytes)?;
         if let State::Open(_, entries) = &mut *state {
             *entries = read;
@@ -204,7 +204,7 @@ pub unsafe extern "C" fn htex_index_entries_json(
     guarded(|| {
         let state = INDEXES.shared(index)?;
         let entries: Vec<&Entry> = state.entries().iter().collect();
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_entries(&entries, out, capacity, length) }
     })
 }
@@ -221,7 +221,7 @@ pub unsafe extern "C" fn htex_index_find_json(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let query = unsafe { needed_text(query) }?;
         let asked: QueryDocument = serde_json::from_str(query)
             .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INVALID_ARGUMENT, error))?;
@@ -295,7 +295,7 @@ pub unsafe extern "C" fn htex_index_ranges(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (name, length) = unsafe { (needed_text(name)?, place(length)?) };
         let (index, entry) = state.entry(name)?;
         let ranges = index.asset_ranges(entry);
@@ -320,7 +320,7 @@ pub unsafe extern "C" fn htex_index_assemble(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (name, mut bytes) = unsafe { (needed_text(name)?, slice(bytes, len)?) };
         let (index, entry) = state.entry(name)?;
         let mut parts = Vec::new();

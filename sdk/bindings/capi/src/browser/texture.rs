@@ -26,7 +26,7 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let id = asset.representation(unsafe { text(model) }?)?.id();
         // SAFETY: as above.
         unsafe { write_text(id, out, capacity, length) }
@@ -43,9 +43,9 @@ pub unsafe extern "C" fn htex_asset_default_condition(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the text is the caller's.
+        // SAFETY: the caller passed this text.
         let condition = asset.representation(unsafe { text(model) }?)?.default_condition();
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = u32::try_from(condition).unwrap_or(u32::MAX);
         Ok(())
     })
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn htex_asset_law_json(
         let law = ASSETS.shared(asset.id)?.manifest().law();
         let law = serde_json::to_string(&law)
             .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&law, out, capacity, length) }
     })
 }
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
         let named = asset.representation(model)?.named_parameters(at)?;
         let parameters = named.into_iter().map(|(name, parameter)| {
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn htex_asset_read_magnitude(
 ) -> htex_status {
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (model, out) = unsafe { (text(model)?, slice_mut(magnitude, len)?) };
         let read = read_magnitude(&asset, model, condition)?;
         if read.len() != out.len() {
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn htex_voice_magnitude(
 ) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointer is the caller's.
+        // SAFETY: the caller passed this pointer.
         let computed = voice.magnitude(unsafe { slice(frequency_hz, len) }?)?;
         // SAFETY: as above. `frequency_hz` is not used any more.
         unsafe { slice_mut(magnitude, len) }?.copy_from_slice(&computed);
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn htex_voice_coverage_json(
 ) -> htex_status {
     guarded(|| {
         let voice = VOICES.exclusive(voice.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let given = unsafe { crate::motion::motion(motion) }?;
         let asked = given.unwrap_or_else(|| voice.motion()).checked()?;
         let json = coverage_json(&voice.coverage(asked)).to_string();

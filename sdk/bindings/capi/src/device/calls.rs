@@ -80,7 +80,7 @@ pub(super) unsafe fn list_json(
 /// Finds a device by its name, and parses its settings.
 ///
 /// # Safety
-/// As in the module `pointers`, for both texts.
+/// Both texts must follow the rule in the documentation of the module `pointers`.
 unsafe fn device_and_settings(
     devices: &Devices,
     name: *const c_char,
@@ -102,7 +102,7 @@ pub(super) unsafe fn info_json(
 ) -> htex_status {
     guarded(|| {
         let devices = devices();
-        // SAFETY: the texts are the caller's.
+        // SAFETY: the caller passed these texts.
         let (known, settings) = unsafe { device_and_settings(&devices, name, settings) }?;
         let (can, problem) = match known.adapter.capabilities(&settings) {
             Ok(can) => (Some(can), None),
@@ -127,7 +127,7 @@ pub(super) unsafe fn open(
 ) -> htex_status {
     guarded(|| {
         let devices = devices();
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let ((known, settings), out) =
             unsafe { (device_and_settings(&devices, name, settings)?, place(out)?) };
         let can = known.adapter.capabilities(&settings)?;
@@ -146,7 +146,7 @@ pub(super) unsafe fn open(
 pub(super) unsafe fn rate_hz(device: htex_device, out: *mut f64) -> htex_status {
     guarded(|| {
         let open = DEVICES.exclusive(device.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = open.rate_hz;
         Ok(())
     })
@@ -161,9 +161,9 @@ pub(super) unsafe fn write(
 ) -> htex_status {
     guarded(|| {
         let mut open = DEVICES.exclusive(device.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (samples, written) = unsafe { (slice(samples, frames)?, place(written)?) };
-        // Set first, so that it is also correct if the device fails.
+        // `written` is set first, so that it is also correct if the device fails.
         *written = 0;
         let timeout = Duration::from_millis(timeout_ms.into());
         *written = open.device.write(samples, timeout)?;
@@ -174,7 +174,7 @@ pub(super) unsafe fn write(
 pub(super) unsafe fn status(device: htex_device, out: *mut htex_device_counts) -> htex_status {
     guarded(|| {
         let open = DEVICES.exclusive(device.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         let out = unsafe { place(out) }?;
         if (out.size as usize) < size_of::<htex_device_counts>() {
             return Err(Failure::argument(

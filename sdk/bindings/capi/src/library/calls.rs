@@ -63,7 +63,7 @@ pub(crate) unsafe fn clear() -> Result<(), Failure> {
 }
 
 pub(super) unsafe fn open(path: *const c_char, out: *mut htex_library) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Source::file(unsafe { needed_text(path) }?.as_ref());
     // SAFETY: as above.
     unsafe { keep_library(source, out) }
@@ -71,7 +71,7 @@ pub(super) unsafe fn open(path: *const c_char, out: *mut htex_library) -> htex_s
 
 #[cfg(windows)]
 pub(super) unsafe fn open_wide(path: *const u16, out: *mut htex_library) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Source::file(&unsafe { crate::pointers::wide_path(path) }?);
     // SAFETY: as above.
     unsafe { keep_library(source, out) }
@@ -82,7 +82,7 @@ pub(super) unsafe fn from_bytes(
     len: usize,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Ok(Source::Memory(unsafe { slice(bytes, len) }?.to_vec()));
     // SAFETY: as above.
     unsafe { keep_library(source, out) }
@@ -92,7 +92,7 @@ pub(super) unsafe fn open_reader(
     reader: *const htex_reader,
     out: *mut htex_library,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Ok(Source::Reader(unsafe { Reader::from_raw(reader) }?));
     // SAFETY: as above.
     unsafe { keep_library(source, out) }
@@ -104,7 +104,7 @@ unsafe fn keep_library(
 ) -> htex_status {
     guarded(|| {
         let source = source()?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         let out = unsafe { place(out) }?;
         out.id = LIBRARIES.insert(Library::open_source(source)?)?;
         Ok(())
@@ -123,7 +123,7 @@ pub(super) unsafe fn name(
 ) -> htex_status {
     guarded(|| {
         let library = LIBRARIES.shared(library.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(library.name(), out, capacity, length) }
     })
 }
@@ -131,7 +131,7 @@ pub(super) unsafe fn name(
 pub(super) unsafe fn count(library: htex_library, out: *mut u64) -> htex_status {
     guarded(|| {
         let library = LIBRARIES.shared(library.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = library.len();
         Ok(())
     })
@@ -140,7 +140,7 @@ pub(super) unsafe fn count(library: htex_library, out: *mut u64) -> htex_status 
 pub(super) unsafe fn page_count(library: htex_library, out: *mut usize) -> htex_status {
     guarded(|| {
         let library = LIBRARIES.shared(library.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = library.index().leaves();
         Ok(())
     })
@@ -158,7 +158,7 @@ pub(super) unsafe fn page_json(
         let entries = library.leaf_entries(page)?.ok_or(Failure::argument(
             "no page of this index; htex_library_page_count tells how many there are",
         ))?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&json(&*entries)?, out, capacity, length) }
     })
 }
@@ -172,7 +172,7 @@ pub(super) unsafe fn entry_json(
 ) -> htex_status {
     guarded(|| {
         let library = LIBRARIES.shared(library.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let name = unsafe { needed_text(name) }?;
         let entry = library.needed(name)?;
         // SAFETY: as above.
@@ -188,7 +188,7 @@ pub(super) unsafe fn asset(
 ) -> htex_status {
     guarded(|| {
         let library = LIBRARIES.shared(library.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (name, models) = unsafe { (needed_text(name)?, models(options)?) };
         let bytes = library.get(name)?;
         let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;

@@ -63,7 +63,7 @@ pub(super) unsafe fn open_path(
     scene_options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Ok(Source::Path(unsafe { needed_text(path) }?.into()));
     // SAFETY: as above.
     unsafe { open(source, open_options, scene_options, out) }
@@ -76,7 +76,7 @@ pub(super) unsafe fn open_wide(
     scene_options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || Ok(Source::Path(unsafe { crate::pointers::wide_path(path) }?));
     // SAFETY: as above.
     unsafe { open(source, open_options, scene_options, out) }
@@ -90,7 +90,7 @@ pub(super) unsafe fn from_bytes(
     scene_options: *const htex_scene_options,
     out: *mut htex_scene,
 ) -> htex_status {
-    // SAFETY: the pointers are the caller's.
+    // SAFETY: the caller passed these pointers.
     let source = || unsafe { Ok(Source::Memory(slice(bytes, len)?, Files::from_raw(files)?)) };
     // SAFETY: as above.
     unsafe { open(source, open_options, scene_options, out) }
@@ -105,7 +105,7 @@ unsafe fn open(
     guarded(|| {
         let zeros = htex_scene_options { size: 0, rate_hz: 0.0 };
         let source = source()?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (models, asked, out) =
             unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
         // No devices, because the program itself takes the samples.
@@ -140,7 +140,7 @@ pub(super) unsafe fn plan_json(
 ) -> htex_status {
     guarded(|| {
         let scene = SCENES.exclusive(scene.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         unsafe { write_text(&scene.plan_json, out, capacity, length) }
     })
 }
@@ -148,7 +148,7 @@ pub(super) unsafe fn plan_json(
 pub(super) unsafe fn rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
     guarded(|| {
         let scene = SCENES.exclusive(scene.id)?;
-        // SAFETY: the place is the caller's.
+        // SAFETY: the caller passed this pointer.
         *unsafe { place(out) }? = scene.renderer.rate_hz();
         Ok(())
     })
@@ -157,7 +157,7 @@ pub(super) unsafe fn rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
 pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -> htex_status {
     guarded(|| {
         let mut scene = SCENES.exclusive(scene.id)?;
-        // SAFETY: the finger is the caller's.
+        // SAFETY: the caller passed this pointer to a finger.
         let finger = unsafe { slice(finger, 1) }?[0];
         if (finger.size as usize) < size_of::<htex_finger>() {
             return Err(Failure::argument(
@@ -181,10 +181,10 @@ pub(super) unsafe fn render(
 ) -> htex_status {
     guarded(|| {
         let mut scene = SCENES.exclusive(scene.id)?;
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (out, rendered) = unsafe { (slice_mut(out, frames)?, place(rendered)?) };
-        // Set first, because all frames up to the end of the scene are rendered even after an
-        // error.
+        // `rendered` is set first, because all frames up to the end of the scene are rendered even
+        // after an error.
         let left = scene.renderer.frames_left().unwrap_or(u64::MAX);
         *rendered = usize::try_from(left).map_or(out.len(), |left| left.min(out.len()));
         *rendered = scene.renderer.render(out)?;

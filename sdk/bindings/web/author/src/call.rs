@@ -51,7 +51,7 @@ pub unsafe extern "C" fn htex_author_call(
     out: *mut htex_author_result,
 ) -> htex_status {
     guarded(|| {
-        // SAFETY: the pointers are the caller's.
+        // SAFETY: the caller passed these pointers.
         let (name, json, files, out) = unsafe {
             (needed_text(name)?, slice(json, json_len)?, slice(files, files_len)?, place(out)?)
         };
@@ -71,7 +71,8 @@ pub unsafe extern "C" fn htex_author_call(
             bytes: handed_over(bytes)?,
             bytes_len: bytes.len(),
         };
-        // Only after `out` is written, because the caller also receives the document of an error.
+        // The error is returned only after `out` is written, because the caller also receives the
+        // document of an error.
         answer.map(drop).map_err(Failure::from)
     })
 }
@@ -95,7 +96,7 @@ fn handed_over(bytes: &[u8]) -> Result<*mut u8, Failure> {
             "the memory for the result cannot be allocated",
         ));
     }
-    // SAFETY: as many bytes were allocated, and are nobody else's.
+    // SAFETY: this number of bytes was allocated, and nobody else uses them.
     unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), at, bytes.len()) };
     Ok(at)
 }

@@ -9,7 +9,7 @@ use crate::model::sets::stored;
 use crate::model::signal::distance_db;
 use crate::model::spectra::{HARD, REFERENCES};
 
-/// If storing the parameters changes the spectrum by more than this, there is a warning, dB RMS.
+/// If storing the parameters changes the spectrum by more than this (dB RMS), there is a warning.
 const STORED_DB: f64 = 0.5;
 
 /// Fits the five reference spectra.

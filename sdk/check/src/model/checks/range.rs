@@ -20,7 +20,8 @@ const SPREADS: f64 = 8.0;
 const LOUDEST: f32 = 1_000.0;
 /// Number of samples between two retunes.
 const BETWEEN: usize = 1_000;
-/// Additional bands. In these, a sound is only searched for samples that are not finite.
+/// Additional bands. In these bands, the checker only searches a sound for samples that are not
+/// finite.
 const BANDS: [Band; 3] = [
     Band { low_hz: 20.0, high_hz: 200.0 },
     Band { low_hz: 150.0, high_hz: 700.0 },

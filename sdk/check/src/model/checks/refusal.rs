@@ -77,8 +77,8 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
     ];
     let mut at = 0;
     for (i, field) in descriptor.fields.iter().enumerate() {
-        // At least 1, because a range of one value has no width, and the number must be outside of
-        // it.
+        // The span is at least 1. Otherwise, in a range of a single value, the number would not be
+        // outside the range.
         let span = (field.max - field.min).max(1.0);
         let wrong = [field.min - span, field.max + span, f64::NAN, f64::INFINITY];
         for number in wrong.into_iter().filter(|_| !lists[i].is_empty()) {

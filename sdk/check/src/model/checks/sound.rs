@@ -111,9 +111,10 @@ pub(crate) fn level(case: &Case) -> CheckResult {
     Ok(Finding::passed(message).with("sound_rms_error", worst))
 }
 
-/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, dB RMS, or from the spectrum
-/// that the window measures for noise with this density. The second comparison is needed because
-/// the window blurs a steep flank at the edge of the band by more than the allowed distance.
+/// Returns the distance (dB RMS) of a sound at [`RATE_HZ`] from a magnitude, or its distance from
+/// the spectrum that the window measures for noise with this magnitude, whichever is smaller. The
+/// second comparison is needed because the window blurs a steep flank at the edge of the band by
+/// more than the allowed distance.
 pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
     let heard = measured_spectrum(sound);
     let blurred = distance_db(&heard, &read_as_noise(magnitude));

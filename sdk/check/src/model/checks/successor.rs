@@ -61,7 +61,8 @@ pub(crate) fn keeps(case: &Case) -> CheckResult {
     Ok(finding.with("sample_difference", difference))
 }
 
-/// Says which field of the older version the newer one does not take as it was.
+/// Returns a sentence about a field that the newer version does not accept as the older version
+/// did.
 fn other_fields(new: &Descriptor, old: &Descriptor) -> Option<String> {
     let changed = old.fields.iter().find_map(|before| {
         let name = &before.name;

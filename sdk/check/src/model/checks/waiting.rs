@@ -7,8 +7,8 @@ use crate::model::case::Case;
 
 const BLOCKS: usize = 2_000;
 const FRAMES: [usize; 3] = [64, 1, 256];
-/// Number of waits that are allowed. Some must be, because a page fault may make the system suspend
-/// the thread.
+/// Number of allowed waits. It is not 0, because a page fault may make the system suspend the
+/// thread.
 const WAITS: u64 = 8;
 
 /// Counters of this thread: its waits, and its calls that read or write.
@@ -40,7 +40,8 @@ pub(crate) fn none(case: &Case) -> CheckResult {
         Ok(())
     };
     play(&mut voice, 64)?;
-    // Reading the counters itself counts as reads. A second reading shows how many.
+    // Reading the counters is itself counted as reads. A second reading shows how many reads this
+    // adds.
     let (first, second) = (counts()?, counts()?);
     play(&mut voice, BLOCKS)?;
     let last = counts()?;

@@ -62,8 +62,8 @@ impl Batch {
             Target::Direct(mut file) => file.write_all(bytes)?,
             Target::Beside(mut beside, path) => {
                 let written = beside.write_all(bytes);
-                // Recorded even if the write failed: other files of this folder may be in the
-                // group.
+                // The folder is recorded even if the write failed, because other files of this
+                // folder may be in the group.
                 self.folders.insert(folder(&path).to_owned());
                 // The file is closed, because a process may only have a few open files.
                 self.written.push((beside.into_temp_path(), path));
@@ -91,8 +91,8 @@ impl Batch {
     fn keep(&mut self) -> io::Result<()> {
         flush(&self.written, &self.folders)?;
         for (mut beside, path) in self.written.drain(..) {
-            // Renamed while the set is locked. A signal handler that ends the process has then
-            // either removed the file before, or finds it complete.
+            // The file is renamed while the set is locked. So a signal handler that ends the
+            // process either removed the file before, or finds it complete.
             unfinished(|all| {
                 std::fs::rename(&beside, &path)?;
                 all.remove(&*beside);

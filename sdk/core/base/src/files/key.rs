@@ -76,8 +76,8 @@ fn make(folder: &Path, path: &Path) -> io::Result<()> {
     options.write(true).create_new(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    // A hard link fails if the path exists, while a rename would replace the key of another
-    // process, whose tags would then be refused.
+    // A hard link fails if the path exists. A rename would replace the key of another process, and
+    // the tags of that process would then be refused.
     let written = options
         .open(&beside)
         .and_then(|mut file| file.write_all(&key))
@@ -110,8 +110,8 @@ impl std::fmt::Debug for Key {
 mod tests {
     use super::*;
 
-    /// Eight threads create one key at the same moment, as an app does that loads its textures in
-    /// threads on its first day.
+    /// Eight threads create one key at the same moment. This can happen when an app runs for the
+    /// first time and loads its textures in several threads.
     #[test]
     fn threads_that_create_a_key_get_the_same_one() {
         for _ in 0..200 {

@@ -27,8 +27,8 @@ pub(crate) static OWN: LazyLock<String> =
     LazyLock::new(|| format!("{BEGINNING}{}-{}-", *MACHINE, std::process::id()));
 
 static MACHINE: LazyLock<String> = LazyLock::new(|| {
-    // Process numbers mean something only until the next start of the system, and only inside one
-    // namespace, which each container has of its own.
+    // A process number is valid only until the next start of the system, and only inside one
+    // namespace. Each container has its own namespace.
     let boot = std::fs::read("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let space = std::fs::read_link("/proc/self/ns/pid").unwrap_or_default();
     let bytes = boot.iter().chain(space.as_os_str().as_encoded_bytes());
@@ -77,7 +77,7 @@ fn is_of_dead(name: &str) -> bool {
     let (true, Some(process)) = (machine == Some(&MACHINE[..]), process) else {
         return false;
     };
-    // Without `/proc`, processes cannot be seen, so none is taken for ended.
+    // Without `/proc`, this process cannot see other processes, so no process counts as ended.
     let processes = Path::new("/proc");
     processes.join("self").exists() && !processes.join(process.to_string()).exists()
 }

@@ -165,8 +165,8 @@ impl FileInProgress {
             return Ok(());
         };
         beside.as_file().sync_all()?;
-        // Renamed while the set is locked. A signal handler that ends the process has then either
-        // removed the file before, or finds it complete.
+        // The file is renamed while the set is locked. So a signal handler that ends the process
+        // either removed the file before, or finds it complete.
         unfinished(|all| {
             std::fs::rename(beside.path(), &*path)?;
             all.remove(beside.path());

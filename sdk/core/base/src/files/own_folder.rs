@@ -95,8 +95,8 @@ impl OwnFolder {
         for folder in folders.into_iter().rev() {
             let path = self.entry_path(folder)?;
             match self.create_dir(&path) {
-                // What exists may be a link to a folder, which the system would follow for
-                // everything below.
+                // The existing entry may be a link to a folder. The system would follow this link
+                // for all entries below it.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => check_folder(&path)?,
                 made => made?,
             }
@@ -421,7 +421,7 @@ mod tests {
         assert_eq!(mode & 0o777, 0o600);
     }
 
-    /// Links of every kind at every place do not lead to anything outside being read, written or
+    /// Links of every kind are placed everywhere. Nothing outside the folder is read, written or
     /// removed.
     #[test]
     fn nothing_is_followed() -> Result<(), Box<dyn std::error::Error>> {

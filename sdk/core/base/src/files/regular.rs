@@ -19,7 +19,8 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
     without_waiting(&mut options);
-    // Opened first and checked then, by the open file, so that the path cannot change in between.
+    // The file is opened first, and then the open file is checked, so that the path cannot change
+    // in between.
     let file = options.open(path)?;
     check_regular(&file.metadata()?)?;
     Ok(file)
@@ -86,7 +87,7 @@ fn check_regular(is: &Metadata) -> io::Result<()> {
 #[cfg(unix)]
 fn without_waiting(options: &mut OpenOptions) {
     use std::os::unix::fs::OpenOptionsExt;
-    // The flags have the bits that `open` takes, whose argument is an `int`.
+    // The flags have the same bits as the argument of `open`, which is an `int`.
     let flags = rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY;
     options.custom_flags(flags.bits().cast_signed());
 }

@@ -73,7 +73,8 @@ impl Findings {
     /// Adds a finding: the broken rule, a JSON pointer (empty for the whole document), and a
     /// message that says what is wrong, where, and what to do.
     pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: impl Into<Notice>) {
-        // Before the limit, because an error may come after a hundred warnings.
+        // The severity is recorded before the limit is checked, because an error may come after a
+        // hundred warnings.
         self.errors |= rule.severity == Severity::Error;
         if self.kept.len() < KEPT {
             let Notice { text, hint } = message.into();

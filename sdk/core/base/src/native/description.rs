@@ -87,7 +87,7 @@ pub fn with_section(module: &[u8], descriptor: &str) -> Option<Vec<u8>> {
             all.extend(section.bytes);
         }
     }
-    // What is left is a part of a section that is cut off.
+    // The remaining bytes are the beginning of a section that is cut off.
     if read != module.len() {
         return None;
     }
@@ -124,7 +124,8 @@ fn sections(module: &[u8]) -> impl Iterator<Item = Section<'_>> {
     })
 }
 
-/// Returns what follows the name of the custom section with the descriptor.
+/// If this is the content of the custom section with the descriptor, returns the bytes after the
+/// section's name.
 fn named(content: &[u8]) -> Option<&[u8]> {
     let (len, content) = number(content)?;
     let (name, content) = content.split_at_checked(len)?;

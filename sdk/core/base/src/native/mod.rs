@@ -35,7 +35,7 @@ const SEARCHED: &str = if cfg!(windows) {
 #[cfg(any(unix, windows))]
 use libloading::Library as Loaded;
 
-/// Stands for a loaded library on systems that have no native libraries.
+/// The type of a loaded library on systems that have no native libraries.
 #[cfg(not(any(unix, windows)))]
 #[derive(Debug)]
 enum Loaded {}
@@ -51,8 +51,8 @@ impl Library {
     /// # Errors
     /// Returns an error if the file does not exist, or is not a library for this machine.
     pub unsafe fn from_file(path: &Path) -> io::Result<Self> {
-        // A loader searches its own folders for a bare name, and only an absolute path keeps it
-        // from that.
+        // The loader would search its own folders for a bare name. Only an absolute path prevents
+        // this.
         let path = absolute(path)?;
         // SAFETY: guaranteed by the caller.
         unsafe { load(path.as_os_str()) }

@@ -9,7 +9,7 @@ use super::unit;
 use crate::butterflies::{Butterfly, Five, Four, Seven, Three, Two};
 use crate::wide::{Work, wide};
 
-/// Complex numbers with real and imaginary parts in separate arrays, as vector instructions need
+/// Complex numbers. Real and imaginary parts are in separate arrays, as vector instructions need
 /// them.
 #[derive(Debug, Clone)]
 pub(super) struct Points {
@@ -63,8 +63,8 @@ impl ComplexFft {
 
     /// Replaces `x_n` by `Σ x_n exp(-2πi k n / len)`.
     pub(super) fn forward(&mut self, points: &mut Points) {
-        // If real and imaginary parts are exchanged, the sums with positive exponents become the
-        // sums with negative exponents.
+        // Exchanging the real and imaginary parts turns sums with positive exponents into sums with
+        // negative exponents.
         points.swap_parts();
         self.inverse(points);
         points.swap_parts();
@@ -103,8 +103,8 @@ impl Work for Transform<'_> {
 }
 
 /// One pass of the transform, by one radix. Butterfly `i` reads the points `i + count j` for each
-/// `j` below the radix, and writes the points `radix stride p + stride k + q` for each `k`, where
-/// `i = stride p + q`.
+/// `j` below the radix. With `i = stride p + q`, it writes the points `radix stride p + stride k +
+/// q` for each `k` below the radix.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
     radix: usize,
@@ -154,7 +154,7 @@ fn rows<const R: usize>(from: &[f64], len: usize) -> [&[f64]; R] {
     core::array::from_fn(|j| &from[j * len..][..len])
 }
 
-/// Returns the part `p` of each row, `len` numbers each.
+/// Returns part `p` of each row. A part has `len` numbers.
 #[inline(always)]
 fn parts<const R: usize>(rows: [&[f64]; R], p: usize, len: usize) -> [&[f64]; R] {
     core::array::from_fn(|j| &rows[j][p * len..][..len])
@@ -182,7 +182,7 @@ pub(super) struct Chirp {
 
 impl Chirp {
     fn new(len: usize) -> Self {
-        // The chirp repeats after `2 len` in `n²`. Reducing `n²` in whole numbers keeps the angle
+        // The chirp has the period `2 len` in `n²`. Reducing `n²` in whole numbers keeps the angle
         // within one turn, where its sine is precise.
         let (square, turn) = (|n: usize| n * n % (2 * len), 2 * len);
         let chirp: Vec<_> = (0..len).map(|n| unit(square(n), turn)).collect();
@@ -192,8 +192,8 @@ impl Chirp {
         let mut longer = ComplexFft::new(long);
         let mut kernel = Points::zeros(long);
         for (n, x) in chirp.iter().enumerate() {
-            // The chirp is the same for `-n`. The values are set and not added, because both places
-            // are one for `n = 0`.
+            // The chirp is the same for `-n`. The values are set and not added, because for `n = 0`
+            // both places are the same.
             for at in [n, (long - n) % long] {
                 kernel.re[at] = x.re / long as f64;
                 kernel.im[at] = -x.im / long as f64;
@@ -223,8 +223,8 @@ impl Chirp {
     }
 }
 
-/// Returns the radices whose product is `n`; none for 0, and `None` if `n` has a prime factor
-/// above 7. Large radices come first, so that strides become long early.
+/// Returns the radices whose product is `n`. The list is empty if `n` is 0. Returns `None` if `n`
+/// has a prime factor above 7. Large radices come first, so that strides become long early.
 fn radices(mut n: usize) -> Option<Vec<usize>> {
     let mut radices = Vec::new();
     for radix in [4, 7, 5, 3, 2] {

@@ -32,16 +32,16 @@ fn power_is_one_and_stationary() {
         let n = part.clone().count() as f64;
         part.map(|x| f64::from(*x).powi(2)).sum::<f64>() / n
     };
-    // 5,000 independent samples for each position in the hop: standard error 2 %.
+    // Each position in the hop has 5,000 independent samples, so the standard error is 2 %.
     for phase in [0, 125, 250, 499] {
         assert!((power(phase) - 1.0).abs() < 0.1, "{phase}: {}", power(phase));
     }
-    // Above 1, because the bins of the band miss some power at its lower edge.
+    // The power is above 1, because the bins of the band miss some power at its lower edge.
     let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
     assert!((1.0..1.03).contains(&total), "{total}");
 }
 
-/// At any position in a hop, before and after a change of the spectrum.
+/// This holds at any position in a hop, before and after a change of the spectrum.
 #[test]
 fn a_frame_made_early_is_the_same_frame() {
     let hop = noise(0).frames.hop;
@@ -78,7 +78,8 @@ fn a_retune_fades_to_the_voice_of_the_new_spectrum() {
     let len = 3 * hop;
     let [first, second, third] =
         [200.0, 50.0, 400.0].map(|scale_hz| rendered(falling(5, scale_hz), len));
-    // Retunes inside the overlap of frames, after it, and too close to the next frame.
+    // The retunes are inside the overlap of two frames, after the overlap, and too close to the
+    // next frame.
     for at in [10, overlap - 3, overlap + 50, hop - 5, hop + 7] {
         let begun = if at < hop && at + fade > hop { hop } else { at };
         let mut voice = falling(5, 200.0);

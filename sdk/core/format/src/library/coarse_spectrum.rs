@@ -13,8 +13,8 @@ const STEPS: f64 = 255.0;
 
 /// A texture's spectrum at 48 points, for searches.
 ///
-/// Point *i* is the level from 20·50^(i/48) to 20·50^((i+1)/48) Hz. A level that is more than 40 dB
-/// below the largest level is raised to 40 dB below it.
+/// Point *i* is the level from 20·50^(i/48) to 20·50^((i+1)/48) Hz. Levels more than 40 dB below
+/// the largest level are raised to this limit.
 ///
 /// ```
 /// use htex_format::library::CoarseSpectrum;
@@ -77,7 +77,8 @@ impl CoarseSpectrum {
     pub fn distance_db(&self, other: &Self) -> f64 {
         let offset = f64::from(self.largest_db) - f64::from(other.largest_db);
         let pairs = self.levels.iter().zip(&other.levels);
-        // In steps, which are whole numbers, so that only the offset is rounded.
+        // The differences are computed in steps, which are whole numbers. Therefore, only the
+        // offset has rounding errors.
         let differences = pairs.map(|(a, b)| i32::from(*a) - i32::from(*b));
         let (sum, squares) = differences.fold((0, 0), |(sum, squares), difference| {
             (sum + difference, squares + difference * difference)
@@ -112,8 +113,9 @@ mod tests {
 
     #[test]
     fn levels_are_those_of_the_magnitudes() {
-        // A slope is a line in log frequency, also where the points are closer than the grid. A point
-        // is 0.7 dB wide, and a single line of the grid may be at its edge.
+        // This slope is a straight line over log frequency, even where the points are closer
+        // together than the frequencies of the grid. Along the slope, a point spans 0.7 dB, and a
+        // single frequency of the grid may lie at its edge.
         let slope = of(|f| 0.1 * f / 1000.0).unwrap().levels_db();
         for (i, level) in slope.iter().enumerate() {
             let hertz = 20.0 * 50f64.powf((i as f64 + 0.5) / 48.0);

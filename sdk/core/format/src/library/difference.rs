@@ -57,8 +57,8 @@ impl LibraryDifference {
                 (None, Some(_)) => Ordering::Greater,
                 (Some(a), Some(b)) => a.name.cmp(&b.name),
             };
-            // Only one entry of each library is in memory, and those that differ, because a library
-            // may have any number of them.
+            // A library may have any number of entries. Therefore, only one entry of each library
+            // and the entries that differ are in memory.
             let ours = if order.is_le() { a.step()? } else { None };
             let theirs = if order.is_ge() { b.step()? } else { None };
             match (ours, theirs) {
@@ -74,7 +74,8 @@ impl LibraryDifference {
     #[must_use]
     pub fn find_renamed(self) -> Self {
         let mut added: BTreeMap<[u8; 32], Vec<Entry>> = BTreeMap::new();
-        // Popped from the end, so that the first removed name goes with the first added one.
+        // The order is reversed, because `pop` takes the last element. In this way the first
+        // removed name is paired with the first added name.
         for entry in self.added.into_iter().rev() {
             added.entry(entry.blake3).or_default().push(entry);
         }

@@ -11,9 +11,9 @@ use crate::library::metadata::LibraryMetadata;
 use crate::library::page;
 use crate::library::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
-/// Largest unpacked size of a leaf, bytes; the next leaf begins before an entry that would exceed
-/// it. With this size, the first read and a packed leaf together stay below 64 kB, and the root
-/// page of a million textures fits into the first read.
+/// Largest unpacked size of a leaf, bytes. An entry that would exceed it begins the next leaf. With
+/// this size, the first read and a packed leaf together stay below 64 kB, and the root page of a
+/// million textures fits into the first read.
 const LEAF_BYTES: usize = 40 << 10;
 
 /// The pages of an index.
@@ -36,27 +36,27 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Adds an entry. Its name must sort after all names added before.
+    /// Adds an entry. Its name must sort after all names that were added earlier.
     pub(crate) fn add(&mut self, entry: Entry, spectrum: Option<CoarseSpectrum>) {
         let size = self.size_of(&entry);
-        // A leaf has at least one entry, however large. Even an entry with the most words and cuts
-        // stays below the 64 KiB that readers allow.
+        // A leaf has at least one entry, even if this entry is larger than the limit. An entry with
+        // the largest number of words and cuts still stays below the 64 KiB that readers allow.
         if !self.entries.is_empty() && self.size + size > LEAF_BYTES {
             self.end_leaf();
         }
         if self.entries.is_empty() {
             let shared = common_prefix(&self.last, entry.name.as_bytes());
-            // The shortest start of this name that sorts after the last name of the leaf before. It
-            // keeps the root page small.
+            // The separator is the shortest prefix of this name that sorts after the last name of
+            // the previous leaf. A short separator keeps the root page small.
             let is_first = self.separators.is_empty();
-            // This name sorts after the last one, so it has a byte behind what both share. The cut
-            // may be inside a character, which is why separators are bytes. The first separator is
-            // empty, so that every name has a leaf.
+            // This name sorts after the last name, so it has at least one byte after the prefix
+            // that both share. The separator may end inside a character, so separators are bytes.
+            // The first separator is empty, so that every name has a leaf.
             let separator = if is_first { 0 } else { shared + 1 };
             self.separators.push(entry.name.as_bytes()[..separator].to_vec());
         }
-        // Computed again, because a new leaf cannot share words or the start of a name with an
-        // earlier one.
+        // The size is computed again, because a new leaf cannot share words or the start of a name
+        // with an earlier leaf.
         self.size += self.size_of(&entry);
         let words = words(&entry);
         for word in words.filter(|word| !self.words.contains(*word)).cloned().collect::<Vec<_>>() {
@@ -72,7 +72,7 @@ impl Pages {
     fn size_of(&self, entry: &Entry) -> usize {
         let before: &[u8] = if self.entries.is_empty() { &[] } else { &self.last };
         let name = entry.name.as_bytes();
-        // Two lengths of up to 255, which take up to two bytes each.
+        // A name has two lengths of up to 255, and each takes up to two bytes.
         let name = name.len() - common_prefix(before, name) + 4;
         let words = words(entry);
         let new = words.clone().filter(|word| !self.words.contains(*word));
@@ -110,7 +110,7 @@ impl Pages {
         for length in &self.lengths {
             put_varint(&mut root, *length);
         }
-        // Metadata are texts, which always become JSON.
+        // Metadata consist of texts, so the conversion to JSON cannot fail.
         let json = serde_json::to_vec(metadata).unwrap_or_else(|_| b"{}".to_vec());
         put_varint(&mut root, json.len() as u64);
         root.extend(json);
@@ -148,8 +148,8 @@ pub(crate) struct PackedIndex {
     pub spectra: Vec<u8>,
 }
 
-/// Returns all words of an entry: those of the first list of words in a leaf, then those of the
-/// second.
+/// Returns all words of an entry: first the words that a leaf lists first, then the words that it
+/// lists second.
 fn words(entry: &Entry) -> impl Iterator<Item = &String> + Clone {
     let rights = entry.license.iter().chain(&entry.author);
     entry.tags.iter().chain(&entry.models).chain(rights)
@@ -192,8 +192,8 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     entries.iter().for_each(|e| put_words(&mut page, &words, &e.models));
     entries.iter().for_each(|e| put_conditions(&mut page, &e.conditions));
     entries.iter().for_each(|e| put_law(&mut page, e));
-    // Own bytes of the textures follow each other, so the start of the first and the lengths
-    // suffice.
+    // The textures' own bytes follow each other without gaps. Therefore, the start of the first
+    // texture and the lengths suffice.
     put_varint(&mut page, entries.first().map_or(0, |e| e.place.own.start));
     entries.iter().for_each(|e| put_varint(&mut page, length(&e.place.own)));
     entries.iter().for_each(|e| put_cuts(&mut page, e));
@@ -210,16 +210,17 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     page
 }
 
-/// Appends 0, or one more than an error in hundredths of a decibel.
+/// Appends the error in hundredths of a decibel plus 1, or 0 if there is no error.
 fn put_error(page: &mut Vec<u8>, error_db: Option<f64>) {
-    // Rounded up, so that a search for at most this error finds no texture that has more. The small
-    // part is for hundredths that a decimal number cannot represent.
+    // The error is rounded up, so that a search with a largest error finds no texture that exceeds
+    // it. The small number is subtracted because binary numbers do not represent all hundredths
+    // exactly.
     let hundredths =
         error_db.map(|db| libm::ceil(db * 100.0 - 1e-6).clamp(0.0, LARGEST_ERROR as f64));
     put_varint(page, hundredths.map_or(0, |hundredths| hundredths as u64 + 1));
 }
 
-/// Appends 0, or one more than the index of a text in `texts`.
+/// Appends the index of a text in `texts` plus 1, or 0 if there is no text.
 fn put_choice(page: &mut Vec<u8>, texts: &[&str], chosen: Option<&str>) {
     let index = chosen.and_then(|chosen| texts.binary_search(&chosen).ok());
     put_varint(page, index.map_or(0, |index| index as u64 + 1));
@@ -228,7 +229,7 @@ fn put_choice(page: &mut Vec<u8>, texts: &[&str], chosen: Option<&str>) {
 fn put_words(page: &mut Vec<u8>, words: &[&str], chosen: &[String]) {
     put_varint(page, chosen.len() as u64);
     for word in chosen {
-        // `words` has all words of the leaf, so the search always succeeds.
+        // `words` contains all words of the leaf, so the search always succeeds.
         let index = words.binary_search(&word.as_str()).unwrap_or_else(|at| at);
         put_varint(page, index as u64);
     }

@@ -44,13 +44,13 @@ pub struct Entry {
     /// Physical quantity of the texture's samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantity: Option<Quantity>,
-    /// Felt difference between the texture and its recordings, RMS over third-octave bands, at the
-    /// worst condition, decibels; `None` if the writer did not know it.
+    /// Felt difference between the texture and its recordings at the worst condition: RMS over
+    /// third-octave bands, decibels. `None` if the writer did not know it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub felt_error_rms_db: Option<f64>,
-    /// Held-out error, RMS over third-octave bands, at the worst recorded condition, decibels;
-    /// `None` if the texture does not state it. For this error, the texture is fitted to one half
-    /// of its recordings and compared with the other half.
+    /// Held-out error at the worst recorded condition: RMS over third-octave bands, decibels.
+    /// `None` if the texture does not state it. To measure this error, the texture is fitted to one
+    /// half of its recordings and compared with the other half.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out_error_db: Option<f64>,
     /// Size of the texture's `.htex` file, bytes.
@@ -85,8 +85,8 @@ pub struct Interval {
 pub(crate) struct TexturePlace {
     /// Range of the bytes that only this texture has, counted from the start of the payload.
     pub own: Range<u64>,
-    /// Objects that the texture shares with other textures, in the order in which a reader inserts
-    /// them into the bytes of `own`.
+    /// Objects that the texture shares with other textures. A reader inserts them into the bytes of
+    /// `own` in this order.
     pub cuts: Vec<Cut>,
     /// The leaf page of the entry, and the entry's number in it.
     pub leaf: usize,
@@ -96,8 +96,8 @@ pub(crate) struct TexturePlace {
 /// A shared object inside a texture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Position of the object in the texture: the number of bytes before the object that the
-    /// texture does not share with other textures.
+    /// Position of the object in the texture: the number of the texture's own bytes (bytes that it
+    /// does not share with other textures) before the object.
     pub at: u64,
     /// Range of the object, counted from the start of the shared part.
     pub object: Range<u64>,

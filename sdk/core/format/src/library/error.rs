@@ -72,7 +72,7 @@ pub enum LibraryError {
         /// The name that was added before.
         other: String,
     },
-    /// Some textures state no licence, and the options of the writer do not allow this.
+    /// Some textures state no licence, and the writer's options do not allow such textures.
     #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
     Unlicensed {
         /// Name of the first texture without a licence.
@@ -101,7 +101,7 @@ pub enum LibraryError {
     },
 }
 
-/// Keeps the kind of an error of the operating system.
+/// If the error comes from the operating system, keeps the kind of that error.
 impl From<LibraryError> for io::Error {
     fn from(error: LibraryError) -> Self {
         let kind = match &error {
@@ -121,8 +121,8 @@ fn advice(nearest: &[String]) -> String {
     format!("its most similar names are {}", nearest.join(", "))
 }
 
-/// Returns the words that continue the message: the number of other textures, with the matching
-/// verb.
+/// Returns the words that continue the message: the number of other textures, and the verb in the
+/// singular or plural.
 fn states(others: &usize) -> String {
     match others {
         0 => " states".to_owned(),

@@ -43,7 +43,7 @@ impl Facts {
     pub(crate) fn new(manifest: &Manifest) -> Self {
         let representations = manifest.representations.iter();
         let known = manifest.conditions.iter().filter(|c| c.is_recorded());
-        // Adding zero turns -0, which a manifest may have, into 0.
+        // A manifest may contain -0. Adding zero turns it into 0.
         let speeds = known.clone().filter_map(|c| c.speed_mm_s).map(|x| x + 0.0);
         let forces = known.filter_map(|c| c.force_n).map(|x| x + 0.0);
         Self {

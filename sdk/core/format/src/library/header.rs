@@ -8,7 +8,7 @@ use crate::library::page::crc32;
 use crate::library::rules as rule;
 
 /// First bytes of every library. As in PNG, they contain a byte that is not ASCII and both kinds of
-/// line ends. A transfer in text mode changes these bytes, so a reader detects such a transfer.
+/// line ends. A transfer in text mode changes these bytes, so a reader notices it.
 pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
 /// File extension of libraries.
 pub const EXTENSION: &str = "htexlib";
@@ -46,8 +46,8 @@ impl Header {
     /// Reads and checks the header at the start of `bytes`. `file_bytes` is the size of the file.
     pub(crate) fn read(bytes: &[u8], file_bytes: u64, limits: &Limits) -> Result<Self, Fault> {
         let start = &bytes[..bytes.len().min(MAGIC.len())];
-        // A file of a few bytes that begins correctly is a library that was cut off, and gets that
-        // error below.
+        // If a file of a few bytes begins correctly, it is a library that was cut off. The error
+        // for this case is below.
         if start.is_empty() || !MAGIC.starts_with(start) {
             let message = "it does not begin as a library; name a .htexlib file, or get it again";
             return Err(Fault::new(rule::LIBRARY_UNRECOGNISED, PLACE, message));
@@ -57,8 +57,8 @@ impl Header {
             let message = format!("the file has {length} of the header's 128 bytes; get it again");
             return Err(Fault::new(rule::LIBRARY_TRUNCATED, "", message));
         };
-        // Before the checks below, as the specification demands: another major version may differ
-        // in everything else.
+        // The specification demands this check before the checks below, because another major
+        // version may differ in everything else.
         check_version(bytes)?;
         check_sum(bytes)?;
         let header = Self::fields(bytes)?;
@@ -170,7 +170,8 @@ pub(crate) fn newer_note(minor: u16) -> Option<Fault> {
     (minor > MINOR).then(|| Fault::new(rule::LIBRARY_VERSION_NEWER, PLACE, message))
 }
 
-/// Returns the note of [`newer_note`] for the first bytes of a file, which need be no valid header.
+/// Returns the note of [`newer_note`] for the first bytes of a file. These bytes need not be a
+/// valid header.
 pub(crate) fn newer_note_of(start: &[u8]) -> Option<Fault> {
     let bytes = start.first_chunk::<HEADER_BYTES>()?;
     let is_library = bytes.starts_with(&MAGIC) && check_version(bytes).is_ok();

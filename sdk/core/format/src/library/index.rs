@@ -110,8 +110,8 @@ impl Index {
         self.root.leaf(leaf)
     }
 
-    /// Returns the byte range, in the file, of the page that contains the spectra for one leaf
-    /// page; `None` if no entry of the leaf page has a spectrum.
+    /// Returns where in the file the spectra for a leaf page are: the byte range of their page.
+    /// Returns `None` if no entry of the leaf page has a spectrum.
     pub fn spectra_range(&self, leaf: usize) -> Option<Range<u64>> {
         self.root.spectra(leaf)
     }
@@ -184,8 +184,8 @@ impl Index {
         entry: &Entry,
         parts: &[B],
     ) -> Result<Vec<u8>, LibraryError> {
-        // The empty file has another hash than any texture, so a missing part becomes the same
-        // error as a changed one.
+        // If a part is missing, the hash of an empty file is compared. No texture has this hash, so
+        // a missing part gives the same error as a changed part.
         let asset = assembled(entry, parts).unwrap_or_default();
         if blake3::hash(&asset).as_bytes() == &entry.blake3 {
             return Ok(asset);

@@ -20,8 +20,8 @@ pub(crate) fn indexed(
     sharing: &Sharing,
 ) -> (Header, PackedIndex, u64) {
     let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
-    // Own bytes of the textures follow each other in the order of names. `write` copies them in the
-    // same order.
+    // The textures' own bytes follow each other in the order of the names. `write` copies them in
+    // the same order.
     for (name, texture) in textures {
         let place = sharing.place(&texture.pieces, payload);
         payload = place.own.end;
@@ -46,7 +46,7 @@ pub(crate) fn indexed(
         pages.add(entry, texture.description.spectrum);
     }
     let index = pages.finish(name, metadata);
-    // The parts follow each other without gaps, so each begins where the one before ends.
+    // The parts follow each other without gaps, so each part begins where the previous part ends.
     let mut end = HEADER_BYTES as u64;
     let mut part = |bytes: u64| {
         let start = end;
@@ -68,7 +68,8 @@ pub(crate) fn indexed(
     (header, index, total)
 }
 
-/// Returns whether the textures have more bytes, relative to the file, than readers allow.
+/// Returns whether the ratio of the textures' total size to the file's size exceeds the limit of
+/// readers.
 pub(crate) fn is_beyond_ratio(header: &Header, total: u64) -> bool {
     total > header.payload.end.saturating_mul(Limits::default().ratio)
 }
@@ -111,8 +112,8 @@ pub(crate) fn write(
     target.write_all(&header.to_bytes())?;
     target.write_all(&index.root)?;
     target.write_all(&index.leaves)?;
-    // `sharing` assigned the places of the objects in this order, and `index` the places of the
-    // textures.
+    // This is the order in which `sharing` assigned the places of the objects, and `index` the
+    // places of the textures.
     let own = textures.iter().flat_map(|(_, texture)| sharing.own_pieces(&texture.pieces));
     copy(sharing.shared().cloned(), stores, target)?;
     target.write_all(&index.spectra)?;
@@ -120,8 +121,8 @@ pub(crate) fn write(
     target.flush()
 }
 
-/// Copies pieces. Those that follow each other in their store, as most of another library do, are
-/// copied at once.
+/// Copies pieces. If several pieces follow each other in their store, they are copied at once. This
+/// is the case for most pieces of another library.
 fn copy(
     mut pieces: impl Iterator<Item = Piece>,
     stores: &mut [&mut dyn Source],

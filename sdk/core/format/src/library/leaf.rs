@@ -17,8 +17,8 @@ use crate::library::rules as rule;
 use crate::library::wire::{Cursor, WireError};
 
 /// Smallest size of an entry, bytes: its hash, three exponents, and one byte in most columns.
-// A name has two lengths. The other columns with a byte at least are tags, models, conditions, law,
-// own length and number of cuts.
+// A name has two lengths. The other columns that have at least one byte per entry are tags, models,
+// conditions, law, own length and number of cuts.
 const LEAST_ENTRY_BYTES: usize = 32 + 3 * 8 + 2 + 6;
 /// Largest number of shared objects in a texture: the largest number of entries in its archive.
 pub(crate) const MOST_CUTS: usize = 256;
@@ -54,7 +54,7 @@ pub(crate) struct LeafReader<'a> {
     pub limits: &'a Limits,
 }
 
-/// The columns of a leaf before the checks against the rest of the file.
+/// The columns of a leaf. They have not yet been compared with the rest of the file.
 struct Columns {
     names: Vec<String>,
     tags: Vec<Vec<String>>,
@@ -66,7 +66,7 @@ struct Columns {
     newer: Vec<Newer>,
 }
 
-/// The values of an entry that the index has since version 1.1.
+/// The values of an entry that the index contains since version 1.1.
 #[derive(Clone, Default)]
 struct Newer {
     license: Option<String>,
@@ -153,7 +153,8 @@ impl LeafReader<'_> {
                 let message = format!("{name:?} is not allowed: {problem}");
                 return Err(Fault::new(rule::LIBRARY_NAME_INVALID, place(), message));
             }
-            // A name outside these bounds would be listed, and could not be found by its name.
+            // A texture with a name outside these bounds would be listed, but a search for its name
+            // would not find it.
             let inside = name.as_bytes() >= low && high.is_none_or(|high| name.as_bytes() < high);
             if !inside || before.is_some_and(|before| name.as_str() <= before) {
                 let message = format!(
@@ -169,7 +170,7 @@ impl LeafReader<'_> {
     /// Checks that a texture's bytes lie within the file. Returns the texture's size in bytes.
     fn check_place(&self, entry: usize, name: &str, place: &TexturePlace) -> Result<u64, Fault> {
         let payload = length(&self.header.payload);
-        // The spectra are behind the objects.
+        // The spectra come after the objects.
         let shared = self.root.spectra_start().saturating_sub(self.header.shared.start);
         let own = length(&place.own);
         let outside = |what: &str| {
@@ -254,8 +255,8 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, WireError> {
     Ok(Conditions { speed_mm_s: interval(cursor, speed)?, force_n: interval(cursor, force)? })
 }
 
-/// Reads a contact and a law. The first byte has two bits for the contact and two for the source of
-/// each exponent; the exponents follow.
+/// Reads a contact and a law. The first byte has two bits for the contact, and two bits for the
+/// source of each of the three exponents. The exponents follow.
 fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, Law), WireError> {
     let bits = usize::from(cursor.byte()?);
     let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
@@ -266,7 +267,7 @@ fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, Law), WireError> {
         let source = SOURCES.get((bits >> (2 * i + 2)) & 3).copied();
         one.source = source.ok_or_else(|| unknown(cursor))?;
         one.exponent = f64::from_le_bytes(cursor.array()?);
-        // A zero has only one form, so -0 is refused.
+        // -0 is refused, so that zero has only one form.
         let is_zero = one.exponent == 0.0 && one.exponent.is_sign_negative();
         if !in_range(one.exponent) || is_zero {
             return Err(cursor.malformed("an exponent is not a number from -4 to 4"));
@@ -285,8 +286,8 @@ fn interval(
     }
     let min = f64::from_le_bytes(cursor.array()?);
     let max = if is_one { min } else { f64::from_le_bytes(cursor.array()?) };
-    // The sign is tested instead of the value, so that -0 is refused: each number has only one
-    // form.
+    // The sign is tested, and not whether the number is below 0, so that -0 is also refused: each
+    // number has only one form.
     let is_number = min.is_finite() && max.is_finite() && min.is_sign_positive();
     if !is_number || (!is_one && min >= max) {
         return Err(cursor.malformed("a range of conditions is not finite, negative or reversed"));
@@ -294,8 +295,8 @@ fn interval(
     Ok(Some(Interval { min, max }))
 }
 
-/// Reads where the textures are. Their own bytes follow each other, and shared objects are inserted
-/// into them.
+/// Reads where the textures are. The textures' own bytes follow each other, and shared objects are
+/// inserted into them.
 fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, WireError> {
     let mut at = cursor.varint()?;
     let owns = column(cursor, count, |cursor| {
@@ -308,7 +309,7 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Wi
     Ok(places.map(|(own, cuts)| TexturePlace { own, cuts, ..TexturePlace::default() }).collect())
 }
 
-/// Reads the columns that the index has since version 1.1.
+/// Reads the columns that the index contains since version 1.1.
 fn newer(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<Newer>, WireError> {
     let words = words(cursor)?;
     let one = |cursor: &mut Cursor<'_>| {
@@ -365,7 +366,7 @@ fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, WireError> {
     })
 }
 
-/// Reads a number and returns its sum with `to`.
+/// Reads a number, adds it to `to`, and returns the sum.
 fn sum(cursor: &mut Cursor<'_>, to: u64, problem: &'static str) -> Result<u64, WireError> {
     let more = cursor.varint()?;
     to.checked_add(more).ok_or(cursor.malformed(problem))

@@ -81,8 +81,8 @@ impl LibrarySource for LibraryFile {
         match self {
             Self::File(file) => file.read_at(offset, buffer),
             Self::Elsewhere(remote) => {
-                // A remote file refuses a range beyond its end, while this trait returns fewer
-                // bytes there.
+                // A remote file refuses a range that ends beyond the file. For such a range, this
+                // trait must return fewer bytes.
                 let there = remote.len().saturating_sub(offset);
                 let count = usize::try_from(there).map_or(buffer.len(), |n| n.min(buffer.len()));
                 remote.read_at(offset, &mut buffer[..count]).map_err(io::Error::other)?;

@@ -10,8 +10,9 @@ use crate::library::error::LibraryError;
 use crate::library::reader::Library;
 use crate::library::source::LibrarySource;
 
-/// Textures and pages that are at most this many bytes apart in the file are read at once. In the
-/// time of a request to a server far away, a common connection transfers about as much.
+/// If two textures or pages are at most this many bytes apart in the file, they are read at once. A
+/// common connection transfers about this many bytes in the time that a request to a distant server
+/// takes.
 const MOST_GAP: u64 = 256 << 10;
 /// Largest read, bytes, of several textures or pages.
 const MOST_READ: u64 = 8 << 20;
@@ -51,12 +52,12 @@ fn part<'a>(run: &Run, bytes: &'a [u8], range: &Range<u64>) -> &'a [u8] {
 
 impl<S: LibrarySource + Sync> Library<S> {
     /// Reads the entries of these textures, in the order in which `names` lists them. One read
-    /// covers several neighbouring pages, and `at_once` reads run at the same time. This saves time
-    /// if the library is on a network.
+    /// covers several neighbouring pages, and up to `at_once` reads run at the same time. This
+    /// saves time if the library is on a network.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::get`]. Also returns an error if the library does not have one
-    /// of the names.
+    /// Returns the errors of [`Self::get`]. Also returns an error if the library lacks one of the
+    /// names.
     pub fn entries_of<N: AsRef<str>>(
         &self,
         names: &[N],
@@ -111,7 +112,7 @@ impl<S: LibrarySource + Sync> Library<S> {
             entries.iter().map(|entry| self.index().asset_ranges(entry)).collect();
         let own: Vec<Range<u64>> =
             all.iter().filter_map(|ranges| ranges.first().cloned()).collect();
-        // Objects are few, and many textures have the same ones.
+        // There are only few objects, and many textures share them.
         let mut objects: HashMap<Range<u64>, Arc<Vec<u8>>> = HashMap::new();
         for range in all.iter().flat_map(|ranges| &ranges[1..]) {
             objects.entry(range.clone()).or_default();
@@ -162,7 +163,7 @@ impl<S: LibrarySource + Sync> Library<S> {
                 });
             }
             drop(sender);
-            // If this ends early, the receiver is dropped, which ends the threads.
+            // If this loop ends early, the receiver is dropped, which ends the threads.
             for (run, bytes) in receiver {
                 taken(run, &bytes?)?;
             }

@@ -5,8 +5,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::library::wire::TEXT_BYTES;
 
-/// Largest size of a library's metadata as JSON, bytes. With it, the root page of a large library
-/// still ends in the first 16 KiB of the file.
+/// Largest size of a library's metadata as JSON, bytes. With metadata of this size, the root page
+/// of a large library still ends within the first 16 KiB of the file.
 pub(crate) const METADATA_BYTES: usize = 8 << 10;
 
 /// The metadata of a library, such as its version, description and authors. Everything may be

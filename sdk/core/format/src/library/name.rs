@@ -10,8 +10,8 @@ use crate::library::wire::TEXT_BYTES;
 
 /// File extension of a texture.
 const ENDING: &str = ".htex";
-/// Largest length of a part, bytes. A part with [`ENDING`] has at most 255 bytes, the limit of file
-/// systems for a file name.
+/// Largest length of a part, bytes. With the suffix [`ENDING`], a part has at most 255 bytes, which
+/// is the limit of file systems for a file name.
 const PART_BYTES: usize = 255 - ENDING.len();
 /// Device names of Windows. No file can have one of these names.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
@@ -38,7 +38,7 @@ pub enum InvalidName {
     /// A part of the name is too long for a file name.
     #[error("a part of it has {0} bytes and the most is 250; shorten it")]
     LongPart(usize),
-    /// A part of the name that denotes a folder ends in `.htex`, like the name of a texture's file.
+    /// A folder in the name ends in `.htex`, like the name of a texture's file.
     #[error("a part of it before a `/` ends in .htex, as a texture's file; rename it")]
     Folder,
     /// A part of the name ends in a space or a dot, which Windows would remove.
@@ -77,10 +77,10 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
 }
 
 /// Returns a form of the name without differences in case and Unicode normalisation. Some systems
-/// treat two names with the same form as the same file. Two names have the same form exactly if
-/// they are a canonical caseless match (The Unicode Standard, definition D145).
+/// treat two names with the same form as the same file. Two names have the same form if, and only
+/// if, they are a canonical caseless match (The Unicode Standard, definition D145).
 fn of_one_file(name: &str) -> String {
-    // Of ASCII, the folding is lower case, and nothing decomposes.
+    // For ASCII, case folding is the conversion to lower case, and no character decomposes.
     if name.is_ascii() {
         return name.to_ascii_lowercase();
     }
@@ -207,7 +207,7 @@ mod tests {
             ("K", "\u{212a}"),
             ("Å", "\u{212b}"),
             ("CAFÉ", "cafe\u{301}"),
-            // A folded character whose decomposition has another order.
+            // A character whose folded form decomposes in another order.
             ("\u{1fb3}\u{301}", "\u{3b1}\u{301}\u{345}"),
         ] {
             let mut names = Names::default();

@@ -31,8 +31,8 @@ impl NamePattern {
         self.matches_with(name, true)
     }
 
-    /// Returns whether a text matches. Unlike in a name, `/` is an ordinary character in this text:
-    /// `*` and `?` also match it.
+    /// Returns whether a text matches. In this text, unlike in a name, `/` is an ordinary
+    /// character, so `*` and `?` also match it.
     pub fn matches_text(&self, text: &str) -> bool {
         self.matches_with(text, false)
     }
@@ -63,7 +63,7 @@ impl FromStr for NamePattern {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // No name may contain these characters, and a name may contain brackets.
+        // Names cannot contain `*` or `?`, but they may contain brackets.
         if !text.contains(['*', '?']) {
             return Ok(Self(NameOrPattern::Name(text.to_owned())));
         }

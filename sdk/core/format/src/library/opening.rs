@@ -79,7 +79,7 @@ impl Opening {
     /// Returns [`LibraryError::Invalid`] if the header or the root page breaks a rule.
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
         self.take(bytes, file_bytes).map_err(|fault| {
-            // A newer minor version is told first, since it may be the reason of the fault.
+            // A newer minor version is reported first, because it may be the cause of the fault.
             let mut findings = Findings::default();
             let note = newer_note_of(&self.start);
             note.into_iter().chain([fault]).for_each(|fault| fault.add_to(&mut findings));
@@ -95,7 +95,8 @@ impl Opening {
     fn take(&mut self, bytes: &[u8], file_bytes: u64) -> Result<(), Fault> {
         let wanted = self.wanted();
         let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
-        // A server without ranges may send the whole file, so what was not wanted is dropped.
+        // A server that does not support ranges may send the whole file, so the bytes that are not
+        // wanted are dropped.
         self.start.extend_from_slice(&bytes[..bytes.len().min(most)]);
         let header = match self.header.take() {
             Some(header) => header,
@@ -117,8 +118,8 @@ impl Opening {
     fn read_header(&self, file_bytes: u64) -> Result<Header, Fault> {
         let header = Header::read(&self.start, file_bytes, &self.limits)?;
         let packed = header.root.end - header.root.start;
-        // Checked before the caller is asked for the root, because it allocates what the header
-        // states.
+        // The size is checked before the caller is asked for the root page, because the caller
+        // allocates as many bytes as the header states.
         page::check_packed_size(packed, self.limits.root_bytes, PLACE)?;
         Ok(header)
     }

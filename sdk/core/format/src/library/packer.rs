@@ -1,11 +1,11 @@
 //! Packs textures into a library.
 //!
-//! The packer does not know which objects are shared until it has received the last texture. So the
-//! packer first writes each added texture to a temporary store, the spool, and writes the library
-//! at the end. Textures of another library need no spool, because they can be read from that
-//! library. The packer orders textures by name, and shared objects by hash. So the same textures
-//! always give the same file. The order in which the textures were added, and the libraries from
-//! which they came, do not matter.
+//! The packer does not know which objects are shared until it has received the last texture.
+//! Therefore, the packer first writes each added texture to a temporary store, the spool, and
+//! writes the library at the end. Textures of another library need no spool, because they can be
+//! read from that library. The packer sorts textures by name, and shared objects by hash. As a
+//! result, the same textures always give the same file, whatever the order in which they were
+//! added, and whichever libraries they came from.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, Write};
@@ -36,7 +36,7 @@ pub(crate) struct Packer<S> {
     path: PathBuf,
     name: String,
     spool: Spool<S>,
-    /// Other libraries, of which textures are packed again. Stores from 1.
+    /// Other libraries whose textures are packed again. Stores from 1.
     libraries: Vec<Box<dyn Source + Send>>,
     objects: Objects,
     /// Textures with different bytes.
@@ -48,15 +48,15 @@ pub(crate) struct Packer<S> {
     /// The name of each texture by its [`file_key`], to find names that denote the same file on
     /// some systems.
     files: BTreeMap<[u8; 16], String>,
-    /// Distinct sets of words. Many textures have the same set, so each distinct set is
+    /// Distinct sets of words. Many textures have the same words, so each distinct set of words is
     /// in memory only once.
     words: BTreeSet<Arc<Words>>,
     /// Whether textures without a licence may be packed.
     pub(crate) allows_unlicensed: bool,
-    /// Computes the descriptions of textures that are added without one.
+    /// Computes a description for each texture that is added without one.
     pub(crate) describe: Option<Describe>,
     pub(crate) metadata: LibraryMetadata,
-    /// Whether an added texture embeds a module that no packed library shares.
+    /// Whether a texture that did not come from a packed library embeds a module.
     has_new_modules: bool,
 }
 
@@ -127,7 +127,7 @@ impl<S: Store> Packer<S> {
     /// Adds a texture; see [`crate::library::Writer::add`].
     pub(crate) fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.check(name)?;
-        // An equal texture is not read again.
+        // If an equal texture was added before, the texture is not read again.
         if let Some(known) = self.by_hash.get(blake3::hash(asset).as_bytes()) {
             let known = *known;
             self.use_again(known, || Ok(asset.to_vec()))?;
@@ -149,7 +149,8 @@ impl<S: Store> Packer<S> {
         if let Some(known) = self.by_hash.get(&blake3) {
             let known = *known;
             self.use_again(known, || Ok(bytes))?;
-            // So that the file does not depend on the order of the textures.
+            // The two descriptions are combined, so that the file does not depend on the order of
+            // the textures.
             let texture = &mut self.textures[known as usize];
             texture.description = texture.description.or(description);
             self.keep(name, known);
@@ -196,7 +197,8 @@ impl<S: Store> Packer<S> {
                         let bytes = library.read_range(range.clone())?;
                         let piece = || Ok::<_, LibraryError>(Piece { store, range: range.clone() });
                         let object = self.objects.add(&bytes, is_part, piece)?;
-                        // From a library, it can be read before the spool is complete.
+                        // The library's copy of the object is used, because it can be read before
+                        // the spool is complete.
                         self.objects.all[object as usize].piece = piece()?;
                         known_objects.insert(range, object);
                         object
@@ -226,8 +228,8 @@ impl<S: Store> Packer<S> {
         }
     }
 
-    /// Returns what a library states about a texture. The index of a library of version 1.0 does not
-    /// state everything, so that such a texture is read.
+    /// Returns what a library states about a texture. The index of a library of version 1.0 does
+    /// not state everything, so a texture of such a library is read.
     fn stated<L: LibrarySource>(
         &self,
         library: &Library<L>,
@@ -299,8 +301,8 @@ impl<S: Store> Packer<S> {
         Ok(Pieces { own, objects: cuts.into() })
     }
 
-    /// Counts one more use of a texture. From the second use on, all its bytes are objects: its
-    /// modules, and what is between them.
+    /// Counts one more use of a texture. From the second use on, all its bytes belong to objects:
+    /// its modules, and the parts between them.
     fn use_again(
         &mut self,
         texture: u32,
@@ -341,8 +343,8 @@ impl<S: Store> Packer<S> {
         Ok(())
     }
 
-    /// Finds the modules that textures of packed libraries have among their own bytes, because no
-    /// other texture of their library has them. Now another texture may.
+    /// If only one texture of a packed library has a module, the module is among the texture's own
+    /// bytes. This function finds such modules. Now another texture may.
     fn find_modules(&mut self) -> Result<(), LibraryError> {
         if self.libraries.is_empty() || self.libraries.len() == 1 && !self.has_new_modules {
             return Ok(());
@@ -394,8 +396,7 @@ impl<S: Store> Packer<S> {
         words
     }
 
-    /// Refuses textures without a licence, because only the people who made such a texture may pass
-    /// it on.
+    /// Refuses textures without a licence, because only their authors may pass them on.
     fn check_licences(&self) -> Result<(), LibraryError> {
         let is_licensed = |texture: u32| self.textures[texture as usize].is_licensed;
         let mut unlicensed = self.added.iter().filter(|(_, texture)| !is_licensed(**texture));
@@ -409,8 +410,8 @@ impl<S: Store> Packer<S> {
 
     /// Writes the library to `target`.
     pub(crate) fn finish(mut self, target: &mut impl Write) -> Result<PackSummary, LibraryError> {
-        // Only here, when all textures are known, so that the message can say how many have no
-        // licence.
+        // The licences are checked only here, when all textures are known, so that the message can
+        // say how many textures have no licence.
         self.check_licences()?;
         self.find_modules()?;
         self.metadata.check().map_err(|problem| LibraryError::Limit {
@@ -423,8 +424,8 @@ impl<S: Store> Packer<S> {
         let textures: Vec<(&String, &PendingTexture)> =
             added.iter().map(|(name, texture)| (name, &textures[*texture as usize])).collect();
         let (mut header, mut index, total) = indexed((&name, &metadata), &textures, &sharing);
-        // Readers refuse a small file that unpacks to a huge folder. Then equal textures are stored
-        // several times.
+        // Readers refuse a small file that unpacks to a huge folder. If this limit would be
+        // exceeded, equal textures are stored several times.
         if is_beyond_ratio(&header, total) {
             sharing = sharing.without_parts();
             (header, index, _) = indexed((&name, &metadata), &textures, &sharing);

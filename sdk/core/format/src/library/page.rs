@@ -8,8 +8,8 @@ use crate::library::rules as rule;
 /// Size of the frame before the stream, bytes.
 const FRAME_BYTES: usize = 8;
 
-/// Returns the largest size that a page can have in the file. At worst, a deflate stream grows by a
-/// few bytes per block.
+/// Returns the largest size that a page can have in the file. In the worst case, a deflate stream
+/// is a few bytes per block larger than its contents.
 fn most_packed(unpacked: u64) -> u64 {
     (unpacked + unpacked / 64 + 64).saturating_add(FRAME_BYTES as u64)
 }
@@ -31,8 +31,8 @@ pub(crate) fn unpack(page: &[u8], most: u64, place: &str) -> Result<Vec<u8>, Fau
             format!("its checksum is {found:08x} instead of {stated:08x}; get the file again");
         return Err(Fault::new(rule::LIBRARY_PAGE_CHECKSUM, place, message));
     }
-    // The size is part of the checksum but still only a claim, so it is limited before memory is
-    // allocated.
+    // The checksum covers the size, but the size may still be wrong. Therefore, it is limited
+    // before memory is allocated.
     check_size(u64::from(size), most, place)?;
     inflate(stream, size as usize).map_err(corrupt)
 }
@@ -69,7 +69,7 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn inflate(stream: &[u8], size: usize) -> Result<Vec<u8>, &'static str> {
-    // One byte more than stated, to detect a stream that is longer than stated.
+    // The buffer is one byte longer than stated, to detect a stream that is longer than stated.
     let mut bytes = vec![0; size + 1];
     let mut inflater = Decompress::new(false);
     let status = inflater
@@ -105,7 +105,8 @@ pub(crate) fn pack(contents: &[u8]) -> Vec<u8> {
 fn deflate(contents: &[u8]) -> Vec<u8> {
     use flate2::{Compress, Compression, FlushCompress};
     let mut stream = Vec::with_capacity(most_packed(contents.len() as u64) as usize);
-    // The level decides the bytes, and equal textures must give an equal file.
+    // The bytes depend on the compression level, so the level is fixed: equal textures must give
+    // equal files.
     let mut deflater = Compress::new(Compression::new(9), false);
     loop {
         let consumed = deflater.total_in() as usize;

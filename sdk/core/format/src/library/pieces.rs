@@ -11,8 +11,8 @@ use crate::library::source::LibrarySource;
 
 /// Prefix of the names of archive entries that textures can share: embedded models.
 const MODULES: &str = "plugins/";
-/// Smallest size of a shared module, bytes. For a smaller one, its place in the index would cost
-/// much of what sharing saves.
+/// Smallest size of a shared module, bytes. The place of a smaller module in the index would take
+/// up much of the space that sharing saves.
 const LEAST_SHARED: usize = 64;
 
 /// A range of bytes in a store.
@@ -39,7 +39,7 @@ pub(crate) struct Pieces {
 pub(crate) struct Object {
     pub blake3: [u8; 32],
     pub piece: Piece,
-    /// Number of times that the object occurs in all textures together.
+    /// How often the object occurs in all textures together.
     pub uses: u64,
     /// `true` if the object is a part of a texture; only equal textures can share such a part. This
     /// is false for modules.
@@ -54,8 +54,8 @@ pub(crate) struct Objects {
 }
 
 impl Objects {
-    /// Counts a use of an object, and returns its index. `piece` puts the object into a store if it
-    /// is new.
+    /// Counts a use of an object, and returns its index. If the object is new, `piece` puts it into
+    /// a store.
     pub(crate) fn add<E>(
         &mut self,
         bytes: &[u8],
@@ -80,7 +80,7 @@ impl Objects {
         object.is_part &= is_part;
     }
 
-    /// Counts one more use of each object of a texture, or one less.
+    /// Counts one more use of each object of a texture, or one fewer if `is_more` is false.
     pub(crate) fn count(&mut self, pieces: &Pieces, is_more: bool) {
         for (_, object) in &pieces.objects {
             let uses = &mut self.all[*object as usize].uses;
@@ -104,7 +104,7 @@ pub(crate) trait Source {
 /// Number of bytes that are read from a library at once.
 const READ_BYTES: u64 = 4 << 20;
 
-/// A library whose textures are packed again. Ranges are ranges of its file.
+/// A library whose textures are packed again. The ranges of its pieces are byte ranges of its file.
 impl<S: LibrarySource> Source for Library<S> {
     fn copy(&mut self, range: Range<u64>, to: &mut dyn Write) -> io::Result<()> {
         let mut at = range.start;

@@ -21,14 +21,15 @@ use crate::library::entry::{Entry, Interval};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Query {
-    /// Words, each of which must occur in the texture's name or in one of its tags, ignoring case.
+    /// Words. Each word must occur in the texture's name or in one of its tags, ignoring case.
     pub words: Vec<String>,
     /// Tags that the texture must have, ignoring case.
     pub tags: Vec<String>,
-    /// Speed, mm/s, that must lie in the texture's recorded range of speeds, widened by 5 %
-    /// ([`crate::SAME_CONDITION`]).
+    /// Speed, mm/s. It must lie in the texture's recorded range of speeds, after the range is
+    /// widened by 5 % ([`crate::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
-    /// Force, newtons, that must lie in the texture's recorded range of forces, widened by 5 %.
+    /// Force, newtons. It must lie in the texture's recorded range of forces, after the range is
+    /// widened by 5 %.
     pub force_n: Option<f64>,
     /// Id of a model that describes the texture, or the last part of the id.
     pub model: Option<String>,
@@ -80,7 +81,8 @@ impl Query {
 
 /// Returns a text in a form that ignores case, for searches.
 fn caseless(text: &str) -> String {
-    // Not lower case, which keeps `ß` and `ss` apart, and the two small forms of sigma.
+    // The text is converted to upper case, because in lower case `ß` and `ss` would still differ,
+    // and so would the two small forms of sigma.
     text.to_uppercase()
 }
 
@@ -91,7 +93,8 @@ fn is_like(pattern: Option<&String>, text: Option<&String>) -> bool {
     let pattern = caseless(pattern);
     let Some((start, rest)) = pattern.split_once('*') else { return pattern == text };
     let Some(mut text) = text.strip_prefix(start) else { return false };
-    // Between two `*`, the first occurrence leaves the most text for what follows.
+    // For a part between two `*`, the first occurrence is taken, because it leaves the most text
+    // for the parts that follow.
     let mut parts: Vec<&str> = rest.split('*').collect();
     let end = parts.pop().unwrap_or_default();
     for part in parts {

@@ -24,7 +24,7 @@ impl Ratio {
     /// Adds the size of a texture that the program is going to read.
     ///
     /// # Errors
-    /// Returns [`LibraryError::Invalid`] if the total size of all textures added so far exceeds the
+    /// Returns [`LibraryError::Invalid`] if the total size of the textures added so far exceeds the
     /// limit.
     pub fn add(&mut self, entry: &Entry) -> Result<(), LibraryError> {
         Ok(self.count(entry, "")?)

@@ -17,12 +17,12 @@ use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
 
-/// Largest number of bytes of the index that are read at once when all entries are listed.
+/// When all entries are listed, at most this many bytes of the index are read at once.
 const READ_AHEAD: u64 = 1 << 20;
 
-/// Pages of the index that are searched for names similar to an absent one.
+/// Largest number of index pages that are searched for names similar to an absent name.
 const MOST_SEARCHED: usize = 16;
-/// Names that the error about an absent one suggests.
+/// Largest number of names that the error about an absent name suggests.
 const MOST_SUGGESTED: usize = 3;
 
 /// An open library of textures. The library reads the bytes of a texture only on request.
@@ -167,7 +167,7 @@ impl<S: LibrarySource> Library<S> {
         self.entry(name)?.ok_or_else(absent)
     }
 
-    /// Returns the most similar names, for an error. In a large library, looks only at the page
+    /// Returns the most similar names, for an error. In a large library, considers only the page
     /// that would list the name.
     fn nearest(&self, name: &str) -> Vec<String> {
         let leaves = match self.index.leaf_of(name) {
@@ -175,7 +175,7 @@ impl<S: LibrarySource> Library<S> {
             Some(leaf) => leaf..leaf + 1,
             None => 0..0,
         };
-        // What cannot be read is not suggested.
+        // Pages that cannot be read are left out.
         let pages = leaves.filter_map(|leaf| self.leaf(leaf).ok());
         let names: Vec<String> = pages
             .flat_map(|page| page.iter().map(|e| e.name.clone()).collect::<Vec<_>>())
@@ -221,9 +221,9 @@ impl<S: LibrarySource> Library<S> {
         self.index.assemble(entry, &parts?)
     }
 
-    /// Reads a texture's description: values for searches, which supplement the facts in the
-    /// texture's manifest. The entry must come from this library. The spectra of all entries on a
-    /// leaf page are on one page of spectra. The function reads this page if it is not in the
+    /// Reads a texture's description: values for searches, in addition to the facts in the
+    /// texture's manifest. The entry must come from this library. One page of spectra contains the
+    /// spectra of all entries of a leaf page. The function reads this page unless it is in the
     /// cache.
     ///
     /// # Errors
@@ -265,8 +265,8 @@ impl<S: LibrarySource> Library<S> {
     /// Returns the entries of a leaf page. Reads the page unless it is the page in the cache.
     fn leaf(&self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
         // The lock is not held while a page is read, so that threads do not wait for each other's
-        // requests. A thread that panics cannot leave half a page here, because pages are replaced
-        // as a whole.
+        // requests. Pages are replaced as a whole. Therefore, a thread that panics cannot leave an
+        // incomplete page in the cache.
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(leaf) = recent().as_ref().filter(|leaf| leaf.number == number) {
             return Ok(leaf.entries.clone());
@@ -336,8 +336,8 @@ impl Ahead {
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Returns the bytes of a page. Reads the pages after it, too. `range` returns the place of each
-    /// page in the file; the pages follow each other, and a page without a place is skipped.
+    /// Returns the bytes of a page. Reads the pages after it, too. `range` returns the place of
+    /// each page in the file. The pages follow each other, and pages without a place are skipped.
     fn page<'a>(
         &self,
         ahead: &'a mut Ahead,

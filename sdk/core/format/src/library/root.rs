@@ -22,15 +22,17 @@ pub(crate) const PLACE: &str = "/root";
 pub(crate) struct Root {
     /// Name of the library.
     pub name: String,
-    /// A separator for each leaf. It sorts before or equal to every name of the leaf, and after all
-    /// names of the leaves before.
+    /// A separator for each leaf. The separator equals the leaf's first name or sorts before it,
+    /// and sorts after all names of the previous leaves.
     separators: Texts,
     /// Offsets of the leaves in the file, followed by the end of the last leaf.
     offsets: Vec<u64>,
     /// The library's metadata.
-    // In a box, so that an open library is not much larger than one that is being opened.
+    // The metadata are in a box, so that the type of an open library is not much larger than the
+    // type of a library that is being opened.
     pub metadata: Box<LibraryMetadata>,
-    /// Offsets of the spectra of each leaf in the file, followed by the end of the last ones.
+    /// Offsets, in the file, of the spectra of each leaf, followed by the end of the last leaf's
+    /// spectra.
     spectra: Vec<u64>,
     /// BLAKE3 of all spectra.
     pub spectra_blake3: [u8; 32],
@@ -46,7 +48,8 @@ impl Root {
             let message = format!("the library's name is not allowed: {problem}");
             return Err(Fault::new(rule::LIBRARY_NAME_INVALID, PLACE, message));
         }
-        // A leaf has two lengths of its separator and its own length, a byte each at least.
+        // Each leaf has three numbers of at least one byte: two lengths for its separator, and the
+        // length of the leaf itself.
         let count = cursor.count(3).map_err(malformed)?;
         if count as u64 != u64::from(header.leaf_count) {
             let message = format!(
@@ -85,8 +88,8 @@ impl Root {
         Some(*self.offsets.get(leaf)?..*self.offsets.get(leaf + 1)?)
     }
 
-    /// Returns the byte range in the file of the spectra of a leaf's entries; `None` if no entry of
-    /// the leaf has a spectrum.
+    /// Returns where in the file the spectra of a leaf's entries are, as a byte range. Returns
+    /// `None` if no entry of the leaf has a spectrum.
     pub(crate) fn spectra(&self, leaf: usize) -> Option<Range<u64>> {
         let range = *self.spectra.get(leaf)?..*self.spectra.get(leaf + 1)?;
         Some(range).filter(|range| !range.is_empty())
@@ -133,9 +136,10 @@ fn metadata(cursor: &mut Cursor<'_>) -> Result<LibraryMetadata, Fault> {
         return Err(malformed(cursor.malformed("the metadata exceeds 8192 bytes")));
     }
     let json = cursor.read_bytes(length).map_err(malformed)?;
-    // By the reader of manifests, so that modules for the web have only one.
+    // The metadata are parsed by the reader of manifests, so that modules for the web contain only
+    // one parser.
     let read = crate::parse_json(json).map_err(|error| error.to_string()).and_then(|value| {
-        // A derived type would also be read from an array of its values.
+        // A type with a derived `Deserialize` would also accept an array of its values.
         if !value.is_object() {
             return Err("it is not an object".to_owned());
         }
@@ -147,7 +151,8 @@ fn metadata(cursor: &mut Cursor<'_>) -> Result<LibraryMetadata, Fault> {
     })
 }
 
-/// Reads the lengths of the spectra and returns their offsets. The spectra end the shared part.
+/// Reads the lengths of the spectra and returns their offsets. The spectra are at the end of the
+/// shared part.
 fn spectra(
     cursor: &mut Cursor<'_>,
     count: usize,
@@ -187,7 +192,8 @@ fn offsets(
     let mut at = header.leaves.start;
     for leaf in 0..count {
         let length = cursor.varint().map_err(|m| Fault::page(PLACE, m))?;
-        // Checked here for all leaves, so that reading one later needs no check of its size.
+        // The sizes of all leaves are checked here, so that reading a leaf later needs no check of
+        // its size.
         page::check_packed_size(length, leaf_bytes, &leaf_place(leaf))?;
         at = at.saturating_add(length);
         offsets.push(at);
@@ -218,8 +224,8 @@ impl Texts {
         for leaf in 0..count {
             let before = text.clone();
             cursor.following(&mut text).map_err(|m| Fault::page(PLACE, m))?;
-            // Only the first separator is empty, so every name sorts at or after it and has a leaf
-            // to be looked for in.
+            // The first separator is empty, so every name equals it or sorts after it. Therefore,
+            // every name belongs to a leaf. All other separators are not empty.
             if (leaf == 0) != text.is_empty() || leaf > 0 && text <= before {
                 let message = format!(
                     "the first name of leaf {leaf} is not above the one before; pack the library again"

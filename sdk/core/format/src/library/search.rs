@@ -23,8 +23,8 @@ pub struct Similar {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duplicate {
     pub entry: Entry,
-    /// Name of the most similar texture among those that come before `entry` in the library, have
-    /// the same quantity and match the query.
+    /// Name of the most similar texture. Only textures that come before `entry` in the library,
+    /// have the same quantity, and match the query are considered.
     pub of: String,
     /// RMS difference of the levels of both spectra, decibels.
     pub distance_db: f64,
@@ -65,7 +65,7 @@ impl<S: LibrarySource> Library<S> {
                 continue;
             }
             let distance_db = spectrum.distance_db(&other);
-            // Equal distances keep the order of the names.
+            // Textures with equal distances stay in the order of their names.
             let place = nearest.partition_point(|near| near.distance_db <= distance_db);
             if place < most {
                 nearest.insert(place, Similar { entry, distance_db });
@@ -77,8 +77,8 @@ impl<S: LibrarySource> Library<S> {
 
     /// Returns each texture whose spectrum nearly equals the spectrum of an earlier texture, sorted
     /// by name. The spectra of the two textures differ by at most `within_db`, and both textures
-    /// have the same quantity. So the result does not contain the first texture of a group with
-    /// nearly equal spectra. Only textures that match the query are compared.
+    /// have the same quantity. In a group of textures with nearly equal spectra, the result does
+    /// not contain the first texture. Only textures that match the query are compared.
     ///
     /// # Errors
     /// Returns an error if the index or the spectra cannot be read or break a rule.
@@ -113,7 +113,7 @@ impl<S: LibrarySource> Library<S> {
     }
 }
 
-/// What equal spectra have in common.
+/// The quantity, the largest level and the levels: textures with equal spectra have the same key.
 type Key = (u8, u32, [u8; 48]);
 
 /// A texture that may be near others.
@@ -121,8 +121,9 @@ struct Candidate {
     entry: Entry,
     quantity: Quantity,
     spectrum: CoarseSpectrum,
-    /// The mean level, and how much higher the lower half of the levels is than the upper half,
-    /// decibels. Both differ by at most the distance of two spectra.
+    /// The mean level, and the difference between the lower and the upper half of the levels,
+    /// decibels. Between two spectra, each of these values differs by at most the distance of the
+    /// spectra.
     mean_db: f64,
     tilt_db: f64,
 }
@@ -145,10 +146,10 @@ impl Candidate {
     }
 }
 
-/// Returns the candidates that are near one before them. The candidates are sorted by name.
+/// Returns each candidate that is near an earlier candidate. The candidates are sorted by name.
 fn near(all: &[Candidate], within_db: f64) -> Vec<Duplicate> {
-    // The means of two spectra differ by at most their distance, so that only neighbours in the
-    // order of means need a comparison.
+    // The means of two spectra differ by at most the distance of the spectra. Therefore, only
+    // spectra with similar means need to be compared.
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by(|a, b| {
         let key = |i: usize| (all[i].quantity, all[i].mean_db);

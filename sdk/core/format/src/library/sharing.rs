@@ -12,7 +12,7 @@ use crate::library::entry::{Cut, TexturePlace};
 use crate::library::leaf::{MOST_CUTS, length};
 use crate::library::pieces::{Object, Piece, Pieces};
 
-/// The objects of all textures. The objects that occur more than once are shared.
+/// The objects of all textures. Objects that occur more than once are shared.
 pub(crate) struct Sharing {
     objects: Vec<Object>,
     /// Place of each object in the shared part; `None` if only one texture has it.
@@ -23,9 +23,9 @@ pub(crate) struct Sharing {
 }
 
 impl Sharing {
-    /// Decides which objects are shared. They are sorted by their hashes, so that the file does not
-    /// depend on the order in which textures were added. If `has_parts` is false, equal textures
-    /// share only their modules.
+    /// Decides which objects are shared. The shared objects are sorted by their hashes, so that the
+    /// file does not depend on the order in which textures were added. If `has_parts` is false,
+    /// equal textures share only their modules.
     pub(crate) fn new(objects: Vec<Object>, has_parts: bool) -> Self {
         let is_shared = |object: &Object| object.uses > 1 && (has_parts || !object.is_part);
         let mut shared: Vec<usize> =
@@ -40,7 +40,7 @@ impl Sharing {
         Self { objects, places, shared, bytes }
     }
 
-    /// Decides again, with equal textures that share only their modules.
+    /// Decides again, but now equal textures share only their modules.
     pub(crate) fn without_parts(self) -> Self {
         Self::new(self.objects, false)
     }
@@ -67,8 +67,9 @@ impl Sharing {
         let (mut inlined, mut cuts) = (0, Vec::new());
         for (at, object) in &pieces.objects {
             let object = *object as usize;
-            // In its store, own bytes exclude all objects. In the file they include the objects
-            // that only this texture has, so a cut lies further on by the size of those before it.
+            // In the store, a texture's own bytes do not include any objects. In the file, they
+            // include the objects that only this texture has. Therefore, the position of a cut
+            // increases by the size of such objects before it.
             match &self.places[object] {
                 Some(place) => {
                     cuts.push(Cut { at: u64::from(*at) + inlined, object: place.clone() })
@@ -81,7 +82,7 @@ impl Sharing {
         TexturePlace { own: start..start + own, cuts, ..TexturePlace::default() }
     }
 
-    /// Returns a texture's own bytes: those around its objects, and the objects that only this
+    /// Returns a texture's own bytes: the bytes around its objects, and the objects that only this
     /// texture has.
     pub(crate) fn own_pieces(&self, pieces: &Pieces) -> Vec<Piece> {
         let Piece { store, range } = &pieces.own;

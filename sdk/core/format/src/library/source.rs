@@ -12,7 +12,7 @@ use crate::library::error::LibraryError;
 /// 16 KiB. For each texture, it reads a page of the index and the texture's bytes.
 pub trait LibrarySource {
     /// Returns the length of the file, bytes. The library calls this function only after the first
-    /// read, so that a network source can take the length from its first response.
+    /// read, so a network source can take the length from its first response.
     ///
     /// # Errors
     /// The errors of the source.

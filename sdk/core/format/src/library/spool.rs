@@ -46,7 +46,7 @@ pub(crate) struct Spool<S> {
 }
 
 /// Number of bytes collected in memory before they are written.
-// A texture has a few kilobytes, so without this buffer each would cost a call of the system.
+// A texture has only a few kilobytes. Without this buffer, each texture would need a system call.
 const BUFFER_BYTES: usize = 1 << 20;
 
 impl<S: Store> Spool<S> {

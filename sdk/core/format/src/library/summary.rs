@@ -95,7 +95,7 @@ impl<S: LibrarySource> Library<S> {
     }
 }
 
-/// Returns the smallest interval that contains both.
+/// Returns the smallest interval that contains both intervals.
 fn widest(a: Option<Interval>, b: Option<Interval>) -> Option<Interval> {
     match (a, b) {
         (Some(a), Some(b)) => Some(Interval { min: a.min.min(b.min), max: a.max.max(b.max) }),

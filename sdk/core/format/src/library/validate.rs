@@ -108,8 +108,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 }
                 Err(fault) => {
                     fault.add_to(&mut self.findings);
-                    // The next leaf can still be checked, but not where its first texture must
-                    // begin, nor any total.
+                    // The next leaf can still be checked. But the place where its first texture
+                    // must begin cannot be checked, and no total can be.
                     (self.next, self.is_whole) = (None, false);
                 }
             }
@@ -124,8 +124,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(())
     }
 
-    /// Checks the pages of spectra. Whether a spectrum is that of its texture is not checked, because
-    /// this would take the texture's model.
+    /// Checks the pages of spectra. The function does not check whether a spectrum belongs to its
+    /// texture, because such a check would need the texture's model.
     fn check_spectra(&mut self) -> Result<(), LibraryError> {
         let index = self.library.index();
         let mut hash = blake3::Hasher::new();
@@ -167,7 +167,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         for (i, entry) in entries.iter().enumerate() {
             let place = entry_place(leaf, i);
             self.entries += 1;
-            // Counted before the texture is read, which limits how much is read in all.
+            // The size is counted before the texture is read, to limit the number of bytes that are
+            // read in total.
             if let Err(fault) = self.ratio.count(entry, &place) {
                 fault.add_to(&mut self.findings);
                 return Ok(false);
@@ -194,7 +195,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             });
     }
 
-    /// Checks that a texture's own bytes directly follow the own bytes of the texture before.
+    /// Checks that a texture's own bytes directly follow the own bytes of the previous texture.
     fn check_gap(&mut self, entry: &Entry, place: &str) {
         let (expected, own) = (self.next, &entry.place.own);
         self.next = Some(own.end);
@@ -244,8 +245,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
     fn check_asset(&mut self, entry: &Entry, place: &str) -> Result<(), LibraryError> {
         let ranges = self.library.index().asset_ranges(entry).into_iter();
         let parts: Result<Vec<_>, _> = ranges.map(|r| self.library.read_range(r)).collect();
-        // The empty file has another hash than any texture, so a missing part is reported as a
-        // changed texture.
+        // If a part is missing, the hash of an empty file is compared. No texture has this hash, so
+        // a missing part is reported as a changed texture.
         let asset = assembled(entry, &parts?).unwrap_or_default();
         if blake3::hash(&asset).as_bytes() != &entry.blake3 {
             changed(entry, place).add_to(&mut self.findings);
@@ -269,7 +270,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             ("conditions", entry.conditions == facts.conditions),
             ("contact", entry.contact == facts.contact),
             ("exponents of the law", entry.law == facts.law),
-            // An index of version 1.0 does not state the others.
+            // An index of version 1.0 does not state the facts below.
             ("licence", entry.quantity.is_none() || entry.license == facts.license),
             ("author", entry.quantity.is_none() || entry.author == facts.author),
             ("quantity", entry.quantity.is_none_or(|quantity| quantity == facts.quantity)),
@@ -301,7 +302,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             });
         let used: u64 = self.objects.iter().map(|(start, end)| end - start).sum();
         let objects = self.library.index().spectra_start().saturating_sub(header.shared.start);
-        // A newer minor version may store something else behind the objects.
+        // A newer minor version may store something else after the objects.
         let is_newer = header.minor > MINOR;
         let unused = if is_newer { 0 } else { objects.saturating_sub(used) };
         self.findings.require(unused == 0, rule::LIBRARY_OBJECT_UNUSED, "/header", || {

@@ -54,19 +54,20 @@ impl<'a> Cursor<'a> {
         self.array().map(|[byte]| byte)
     }
 
-    /// Reads a LEB128 integer. A longer code than necessary is an error.
+    /// Reads a LEB128 integer. A code that is longer than necessary is an error.
     pub(crate) fn varint(&mut self) -> Result<u64, WireError> {
         let mut value = 0u64;
         for i in 0..VARINT_BYTES {
             let byte = self.byte()?;
             let bits = u64::from(byte & 0x7f);
-            // Nine bytes hold 63 bits, so the tenth has only one left.
+            // Nine bytes contain 63 bits, so the tenth byte may contain only one bit.
             if i == VARINT_BYTES - 1 && byte > 1 {
                 return Err(self.malformed("an integer exceeds 64 bits"));
             }
             value |= bits << (7 * i);
             if byte & 0x80 == 0 {
-                // A zero at the end adds nothing to the value, so the integer has a shorter form.
+                // A zero byte at the end adds nothing to the value, so the same integer has a
+                // shorter code.
                 let is_shortest = byte != 0 || i == 0;
                 return if is_shortest {
                     Ok(value)
@@ -103,7 +104,7 @@ impl<'a> Cursor<'a> {
         std::str::from_utf8(bytes).map_err(|_| self.malformed("a text is not UTF-8"))
     }
 
-    /// Reads the next text into `text`, which must contain the text before it.
+    /// Reads the next text into `text`, which must contain the previous text.
     pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), WireError> {
         let shared = self.length()?;
         if shared > text.len() {

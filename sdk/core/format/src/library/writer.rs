@@ -69,7 +69,7 @@ impl Writer {
         self.packer.describe = Some(describe);
     }
 
-    /// Adds a texture that was checked before, perhaps by another thread.
+    /// Adds a texture that has already been checked, perhaps by another thread.
     ///
     /// # Errors
     /// Returns the errors of [`Self::add`], except the error for an asset that is not valid.
@@ -87,8 +87,8 @@ impl Writer {
     /// # Errors
     /// - The name breaks a rule of [`check_name`](crate::library::check_name), or equals an earlier
     ///   name apart from case and Unicode normalisation.
-    /// - The asset is not valid, or has more or longer tags than the index can store (64 tags of
-    ///   255 bytes).
+    /// - The asset is not valid, or its tags are too many or too long for the index (64 tags of 255
+    ///   bytes).
     /// - The bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)

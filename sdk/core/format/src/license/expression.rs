@@ -13,11 +13,11 @@ const EXCEPTIONS: &str = include_str!("exceptions.txt");
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Token {
-    /// A licence: an id that is listed, or `LicenseRef-NAME`.
+    /// A licence: a listed id, or `LicenseRef-NAME`.
     License,
     Exception,
     AdditionRef,
-    /// An id in neither list. It may be a newer licence or a newer exception.
+    /// An id in neither list. The id may be a newer licence or a newer exception.
     Unlisted,
     Open,
     Close,
@@ -57,7 +57,7 @@ const fn unexpected(last: Option<Token>, has_addition: bool) -> &'static str {
 /// If the expression breaks the grammar. The text says what is wrong.
 pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
     let (mut rest, mut last, mut open, mut unlisted) = (expression, None, 0_usize, None);
-    // Whether the licence before has an exception, after which there is no second one.
+    // Whether the previous licence already has an exception. A second exception is not allowed.
     let mut has_addition = false;
     loop {
         let text = rest.trim_start_matches(is_space);
@@ -93,13 +93,13 @@ pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
     }
 }
 
-/// The white space of ASCII. Characters that only Unicode counts as white space separate nothing.
+/// The white space of ASCII. White space of Unicode outside ASCII does not separate words.
 const fn is_space(c: char) -> bool {
     matches!(c, '\t'..='\r' | ' ')
 }
 
-/// Returns the token at the start of a text, and its length. After `WITH` it is the name of an
-/// exception, and otherwise that of a licence.
+/// Returns the token at the start of a text, and its length. After `WITH`, a word is the name of an
+/// exception. Elsewhere it is the name of a licence.
 fn token(text: &str, is_addition: bool) -> Result<(Token, usize), &'static str> {
     if text.starts_with('(') {
         return Ok((Token::Open, 1));
@@ -136,8 +136,8 @@ fn token(text: &str, is_addition: bool) -> Result<(Token, usize), &'static str> 
     Ok((token, word.len()))
 }
 
-/// Parses `LicenseRef-NAME` or `AdditionRef-NAME`, after `DocumentRef-NAME:` if it is in another
-/// document. Returns `None` for a word that does not begin as one of these.
+/// Parses `LicenseRef-NAME` or `AdditionRef-NAME`. If the text is in another document,
+/// `DocumentRef-NAME:` precedes it. Returns `None` for a word that begins with none of these.
 fn reference(word: &str) -> Option<Result<Token, &'static str>> {
     let is_name = |name: &str| !name.is_empty() && name.chars().all(is_of_id);
     let (own, is_document) = match word.strip_prefix("DocumentRef-") {
@@ -166,7 +166,7 @@ fn is_of_id(c: char) -> bool {
 /// Returns whether an id is a line of a list. The lists are sorted by their bytes, so a binary
 /// search finds the id. The search is fast because opening any asset with a licence needs it.
 fn is_listed(mut list: &str, id: &str) -> bool {
-    // Some deprecated ids end in `+`, which is no letter of an id here.
+    // Some deprecated ids end in `+`, but here `+` is not a character of an id.
     if !id.chars().all(is_of_id) {
         return false;
     }
@@ -199,8 +199,8 @@ mod tests {
     /// The standard's grammar and list. Deprecated ids still count as licences.
     const LISTED: ParseMode = ParseMode { allow_deprecated: true, ..ParseMode::STRICT };
 
-    /// Returns what the crate `spdx` says about an expression.
-    /// A wrong expression has no text here: the crate words its own.
+    /// Returns what the crate `spdx` says about an expression. The result for a wrong expression
+    /// contains no text, because the crate has its own error texts.
     fn expected(license: &str) -> Result<Option<String>, ()> {
         let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
             return Ok(None);
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn the_lists_are_those_of_the_standard() {
-        // The crate lists a word for the absence of a statement, which is no licence.
+        // The crate also lists a word for "no statement", which is not a licence.
         let licenses = || ALL.iter().filter(|license| license.name != "NOASSERTION");
         let ids: Vec<&str> = licenses().map(|license| license.name).collect();
         assert_eq!(LICENSES.lines().collect::<Vec<_>>(), ids);
@@ -234,8 +234,9 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// The crate is stricter about ids of the other list, and less strict about references and
-        /// white space. So exceptions are behind `WITH` here, and all words are apart.
+        /// The crate is stricter if an id is from the wrong list, and less strict about references
+        /// and white space. Therefore, in this test exceptions occur only after `WITH`, and all
+        /// words are separated.
         #[test]
         fn any_expression_is_judged_as_by_the_crate(words in prop::collection::vec(prop::sample::select(vec![
             "MIT", "GPL-2.0", "GPL-3.0-only", "CC-BY-4.0", "LicenseRef-a", "DocumentRef-b:LicenseRef-c", "mit", "none",

@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::{PublicKey, SecretKey};
 use crate::ReadError;
 
-/// The suffix that turns a file's name into the name of its signature file, as in `oak.htex.sig`.
+/// The suffix that is added to a file's name to get the name of its signature file, as in
+/// `oak.htex.sig`.
 pub const SIGNATURE_EXTENSION: &str = "sig";
 
-/// The largest file with a signature, bytes.
+/// The largest size of a signature file, bytes.
 const MOST_BYTES: usize = 4096;
 
 /// The kind of a signed file.
@@ -95,7 +96,8 @@ impl SignedContent {
     }
 
     /// Returns the text that is signed: `htex KIND 1`, the name, the version and the hash, each
-    /// followed by a zero byte. The kind comes first, so that a signature is valid for one kind.
+    /// followed by a zero byte. The text contains the kind, so that a signature is valid only for
+    /// files of this kind.
     pub(super) fn text(&self) -> Vec<u8> {
         let mut text = format!("htex {} 1\0", self.kind).into_bytes();
         for part in [&self.name, &self.version, &self.blake3] {
@@ -132,7 +134,7 @@ pub struct FileSignature {
 }
 
 impl FileSignature {
-    /// Parses a file with a signature.
+    /// Parses a signature file.
     ///
     /// # Errors
     /// Returns an error if the bytes are not a signature file of version 1.

@@ -45,8 +45,8 @@ impl PublicKey {
     pub(super) fn has_signed(&self, text: &[u8], signature: &str) -> bool {
         let key = VerifyingKey::from_bytes(&self.0).ok();
         let signature = from_hex(signature).map(|bytes| Signature::from_bytes(&bytes));
-        // Strict, because the plain check also accepts weak keys, for which one signature is valid
-        // for several texts.
+        // The check is strict, because the plain check also accepts weak keys. With a weak key, one
+        // signature is valid for several texts.
         key.zip(signature)
             .is_some_and(|(key, signature)| key.verify_strict(text, &signature).is_ok())
     }

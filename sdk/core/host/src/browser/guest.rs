@@ -41,7 +41,7 @@ impl Guest {
         let functions = Functions::find(&mut names, module.shared.follows_motion())?;
         let start = Instant::now();
         let raw = module.guest.instance(&names.0.join(","));
-        // The start function may have run, so its time counts even if it failed.
+        // The time counts even if the call failed, because the start function may have run.
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|what| Fault::Start(Box::new(Fault::Refused { what })))?;
         usage.grow(raw.memory_bytes())?;
@@ -59,8 +59,8 @@ impl Guest {
         function.call(&self.raw, parameters)
     }
 
-    /// Checks the result of a call whose time limit was `most`. A call that took longer fails only
-    /// here, because the host cannot interrupt it.
+    /// Checks the result of a call whose time limit was `most`. If a call took longer, it fails
+    /// only here, because the host cannot interrupt it.
     pub(super) fn returned<R>(
         &mut self,
         _module: &WasmModule,
@@ -72,7 +72,8 @@ impl Guest {
             let ms = most.as_millis();
             return Err(Fault::Deadline { ms });
         }
-        // A browser does not ask before a memory grows, so the growth is counted after the call.
+        // A browser does not ask the host before a memory grows. Therefore, the growth is counted
+        // after the call.
         let returned = result?;
         self.usage.grow(self.raw.memory_bytes())?;
         Ok(returned)

@@ -5,17 +5,17 @@
 mod raw {
     #[link(wasm_import_module = "htex")]
     unsafe extern "C" {
-        /// Compiles a module. Returns its handle, or 0 if that fails.
+        /// Compiles a module. Returns the module's handle, or 0 if the compilation fails.
         pub(super) fn module_new(bytes: *const u8, len: usize) -> u32;
         pub(super) fn module_free(module: u32);
         /// Creates an instance and looks up its exports with these names, which are separated by
-        /// commas. Returns the instance's handle, or 0 if that fails.
+        /// commas. Returns the instance's handle, or 0 on failure.
         pub(super) fn instance_new(module: u32, names: *const u8, names_len: usize) -> u32;
         pub(super) fn instance_free(instance: u32);
         /// Returns the size of the instance's memory, bytes.
         pub(super) fn instance_memory(instance: u32) -> usize;
         /// Calls the export with this index. `typed` states the types of the `len` arguments and of
-        /// the result. Returns 0 if the call returns.
+        /// the result. Returns 0 if the call returns without a trap.
         pub(super) fn instance_call(
             instance: u32,
             function: u32,
@@ -97,7 +97,7 @@ impl GuestInstance {
     ) -> Result<u64, String> {
         debug_assert_eq!(types.len(), slots.len());
         let (len, mut result) = (types.len().min(slots.len()), 0);
-        // SAFETY: live slices of this length, and a place for the result.
+        // SAFETY: the slices are live and have this length, and there is a place for the result.
         let failed = unsafe {
             raw::instance_call(
                 self.0,
@@ -117,7 +117,7 @@ impl GuestInstance {
 
     /// Reads bytes or numbers at an address of the instance's memory.
     pub(super) fn read<T: Number>(&self, at: u32, out: &mut [T]) -> Result<(), Outside> {
-        // SAFETY: a live slice of numbers, each of whose bit patterns is one.
+        // SAFETY: a live slice of numbers; every bit pattern is a valid number.
         let failed =
             unsafe { raw::instance_read(self.0, at, out.as_mut_ptr().cast(), size_of_val(out)) };
         if failed == 0 { Ok(()) } else { Err(Outside) }

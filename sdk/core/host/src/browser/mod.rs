@@ -4,7 +4,7 @@
 //! Modules follow the same rules as with the engine of the feature `wasm`. A module imports
 //! nothing, and its memory and tables are limited. Each voice has a separate instance, and the host
 //! does not call an instance again after a trap. But the engine of a browser cannot interrupt a
-//! call. A call that takes longer than its limit runs to its end, and then returns an error. An
+//! call. If a call takes longer than its limit, it runs to its end, and then returns an error. An
 //! endless loop in a module ends only when the page stops the worker that runs the module
 //! (`sdk/bindings/web/src/guarded.js`).
 //!

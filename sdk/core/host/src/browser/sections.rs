@@ -14,7 +14,8 @@ const MEMORY: u8 = 5;
 const HAS_MAXIMUM: u8 = 1;
 
 /// Error: a module cannot be compiled.
-// Here and not beside the compilation, because the tests of this file also run outside a browser.
+// The type is in this file and not beside the compilation, because the tests of this file also run
+// outside a browser.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum CompileError {
     #[error("the module is larger than the {bytes} bytes allowed")]
@@ -70,7 +71,7 @@ pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Com
     Ok(out)
 }
 
-/// Returns the memories or tables of a section with maxima added.
+/// Returns a section's memories or tables, and adds the maxima.
 fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, CompileError> {
     let (most, above) = match id {
         MEMORY => {
@@ -90,8 +91,8 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Compi
     push(&mut out, count);
     for _ in 0..count {
         if id == TABLE {
-            // A reference type of one byte. The encodings of other types begin with a byte that is
-            // no such type.
+            // The type must be a reference type of one byte. The encodings of all other types begin
+            // with a different byte.
             let kind = byte(&mut body).ok_or_else(|| unreadable(id))?;
             if !matches!(kind, 0x70 | 0x6f) {
                 return Err(CompileError::Kind);
@@ -99,7 +100,7 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Compi
             out.push(kind);
         }
         let flags = byte(&mut body).ok_or_else(|| unreadable(id))?;
-        // Further flags mean shared or 64-bit memories.
+        // Other flags mean shared or 64-bit memories.
         if flags > HAS_MAXIMUM {
             return Err(CompileError::Kind);
         }

@@ -10,8 +10,8 @@ const TIMES: f64 = 10.0;
 const FIRST: Duration = Duration::from_secs(1);
 
 /// The time left for one voice. A voice starts with one second, and each rendered sample adds ten
-/// times its duration. So in the long run rendering takes at most ten times the duration of the
-/// samples.
+/// times its duration. As a result, in the long run rendering takes at most ten times the duration
+/// of the samples.
 #[derive(Debug)]
 pub(super) struct Allowance {
     left: Duration,

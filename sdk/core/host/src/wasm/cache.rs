@@ -1,9 +1,9 @@
 //! Compiled modules on disk.
 //!
 //! The name of a file in the cache contains the hashes of the module and of the engine. Each file
-//! begins with a keyed hash of its name and its content. By this hash, the program recognises
-//! damaged files and files that another user wrote. [`WasmCache`] describes how the cache is
-//! protected.
+//! begins with a keyed hash of its name and its content. With this hash, the program recognises
+//! files that are damaged, and files that another user wrote. [`WasmCache`] describes how the cache
+//! is protected.
 //!
 //! The program runs the cached files as machine code. Therefore the program does not use a folder
 //! that belongs to another user or to which other users may write. If a file has no keyed hash made
@@ -26,7 +26,7 @@ const EXTENSION: &str = ".cwasm";
 /// Name of the key file in the user's configuration folder.
 const KEY: &str = "wasm.key";
 
-/// A folder of compiled modules that only this user can write to, and the key of its files.
+/// A folder of compiled modules to which only this user can write, and the key of the files in it.
 pub(super) struct Cache {
     folder: PathBuf,
     key: Key,
@@ -52,13 +52,14 @@ impl Cache {
         let name = name(engine, module);
         let bytes = std::fs::read(self.folder.join(&name)).ok()?;
         let (tag, artifact) = bytes.split_at_checked(HASH)?;
-        // The tag covers the name, so that a file cannot be renamed to stand in for another module.
+        // The tag also depends on the name, so that a file cannot be renamed to replace another
+        // module.
         if self.key.tag(&name, artifact) != *<&[u8; HASH]>::try_from(tag).ok()? {
             return None;
         }
-        // SAFETY: the artifact is the output of `serialize` for this module: its tag was made with
-        // a key that only this user can read. The engine refuses artifacts of other versions and
-        // settings.
+        // SAFETY: the artifact is the output of `serialize` for this module, because its tag was
+        // made with a key that only this user can read. The engine refuses artifacts of other
+        // versions and settings.
         unsafe { Module::deserialize(engine, artifact) }.ok()
     }
 
@@ -75,8 +76,8 @@ impl Cache {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let file = self.folder.join(name);
-        // The name is unique, so that processes and threads that compile the same module do not
-        // collide.
+        // The name is unique, so that several processes or threads can compile the same module at
+        // the same time.
         let beside = file.with_extension(format!("{}-{count}.part", std::process::id()));
         let content = [&self.key.tag(name, artifact)[..], artifact].concat();
         let written =
@@ -90,7 +91,7 @@ impl Cache {
 }
 
 fn name(engine: &Engine, module: &[u8]) -> String {
-    // Another version of Rust may hash differently. Its modules are then compiled again.
+    // The hash may differ between versions of Rust. In this case modules are compiled again.
     let mut hasher = DefaultHasher::new();
     engine.precompile_compatibility_hash().hash(&mut hasher);
     let hash = blake3::hash(module).to_hex();
@@ -121,8 +122,8 @@ fn forget_oldest(folder: &Path) -> io::Result<()> {
         }
     }
     files.sort();
-    // Oldest by the time of writing. Reading does not change that time, so modules in use are
-    // compiled again now and then.
+    // The oldest files are those that were written first. Reading does not change the time of a
+    // file, so modules in use are compiled again now and then.
     for (_, path) in files.iter().rev().skip(MOST_FILES) {
         std::fs::remove_file(path)?;
     }
@@ -158,7 +159,7 @@ mod tests {
             Some(Cache { folder, key })
         }
 
-        /// Returns whether the module is found, and caches it.
+        /// Returns whether the module is already in the cache, and then stores it.
         fn found(&self) -> bool {
             let cache = self.cache().unwrap();
             let found = cache.find(&self.engine, MODULE).is_some();
@@ -198,7 +199,7 @@ mod tests {
         // A file of another user, who has a different key.
         std::fs::remove_dir_all(place.dir.path().join("config")).unwrap();
         assert!(!place.found());
-        // An engine with other settings has a different file.
+        // An engine with other settings uses another file.
         place.engine = Engine::new(wasmtime::Config::new().consume_fuel(true)).unwrap();
         assert!(!place.found());
     }

@@ -46,13 +46,14 @@ impl Instance {
     ) -> Result<i64, Fault> {
         let bins = input.frequency_hz.len().min(input.magnitude.len());
         let numbers = 2 * bins + input.signal.len() + input.options.len() + parameters.len() + 1;
-        // All arrays consist of f64, so each one that follows another is aligned.
+        // All arrays consist of f64, so each array that follows another one is aligned.
         let frequency = self.buffer(numbers * 8)?;
         let magnitude = self.write(frequency, &input.frequency_hz[..bins])?;
         let signal = self.write(magnitude, &input.magnitude[..bins])?;
         let options = self.write(signal, input.signal)?;
         let level = self.write(options, input.options)?;
-        // NaN, so that a level that the module does not write is noticed (`LoadedModel::fit`).
+        // The initial level is NaN, so that `LoadedModel::fit` notices if the module does not write
+        // a level.
         let out = self.write(level, &[f64::NAN])?;
         let behind = out + (parameters.len() * 8) as u32;
         self.guard(behind)?;
@@ -150,8 +151,8 @@ impl Instance {
         rate_hz: f64,
         seed: u64,
     ) -> Result<i64, Fault> {
-        // Allocated once for the voice. It is enlarged only if the voice is retuned to a parameter
-        // set that is longer than a block.
+        // Allocated once for the voice. The buffer is enlarged only if the voice is retuned to a
+        // parameter set that is longer than a block.
         self.buffer(4 * BLOCK)?;
         let (at, len) = self.pass(parameters)?;
         let (low, high) = band.edges();

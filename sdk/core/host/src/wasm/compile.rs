@@ -12,8 +12,8 @@ use super::process;
 use crate::sandbox::Sandbox;
 use crate::{WasmCompiler, WasmLimits};
 
-/// Factor by which a machine may be slower than the machine on which the estimate was measured, so
-/// that the time limit still holds.
+/// A machine may be slower by this factor than the machine on which the estimate was measured. The
+/// time limit then still holds.
 const SLOWER: f64 = 3.0;
 
 /// Returns the highest effort that the time limit allows.
@@ -36,8 +36,8 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     let cache = Cache::open(&limits.cache);
     let find = |engine: &Engine| cache.as_ref()?.find(engine, bytes);
     let optimised = engine(limits, Effort::Optimised)?;
-    // The cache comes before the estimate: what was compiled once needs no time to compile, however
-    // it is estimated.
+    // The cache is searched before the time is estimated, because a module that is in the cache
+    // needs no time to compile, whatever the estimate is.
     if let Some(module) = find(&optimised) {
         return Ok(module);
     }
@@ -55,12 +55,13 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     let start = Instant::now();
     let compiled = compile(&engine, bytes, limits, effort, time);
     sandbox.budget.spend(start.elapsed());
-    // After the time was spent, so that modules that cannot be compiled also use up the budget.
+    // The result is checked only after the time was subtracted, so that modules that cannot be
+    // compiled also use up the budget.
     let module = compiled?;
     if let Some(cache) = cache
         && let Ok(artifact) = module.serialize()
     {
-        // The error is ignored: the module is then compiled again next time.
+        // An error is ignored. The module is then compiled again next time.
         let _ = cache.keep(&engine, bytes, &artifact);
     }
     Ok(module)
@@ -77,8 +78,8 @@ fn compile(
         WasmCompiler::Here => here(engine, bytes),
         WasmCompiler::Program(program, arguments) => {
             let artifact = process::compile((program, arguments), bytes, limits, effort, time)?;
-            // SAFETY: the compiler that the caller named has just written the artifact, to a pipe
-            // that no other process has open.
+            // SAFETY: the compiler that the caller named has just written the artifact to a pipe.
+            // No other process has this pipe open.
             Ok(unsafe { Module::deserialize(engine, artifact) }?)
         }
     }

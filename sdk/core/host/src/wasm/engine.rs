@@ -1,11 +1,11 @@
 //! The engine that compiles and runs modules, and the clock that interrupts them.
 //!
 //! Time limits use wasmtime's epochs: a thread increments a counter (20 times per second with the
-//! default limits), and wasmtime stops a call when the counter reaches the call's deadline. So the
-//! time limit also stops endless loops. The engine can also count instructions (`fuel`). A limit on
-//! instructions stops the same calls on every machine. With [`WasmEngine::Signals`], a memory limit
-//! costs no time while a module runs: the engine reserves addresses, so it need not compare each
-//! access with a bound.
+//! default limits), and wasmtime stops a call when the counter reaches the call's deadline.
+//! Therefore, the time limit also stops endless loops. The engine can also count instructions
+//! (`fuel`). A limit on instructions stops the same calls on every machine. With
+//! [`WasmEngine::Signals`], a memory limit takes no time while a module runs, because the engine
+//! reserves addresses and need not compare each access with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -23,7 +23,8 @@ const TICK: (Duration, Duration) = (Duration::from_millis(1), Duration::from_mil
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Effort {
     Optimised,
-    /// As little as possible, so that compilation time is nearly proportional to the module's size.
+    /// The least possible effort, so that compilation time is nearly proportional to the module's
+    /// size.
     Quick,
 }
 
@@ -39,12 +40,12 @@ static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 /// thread. If this code is in a plugin, the program must call this function before it unloads the
 /// plugin.
 pub fn end_wasm_clocks() {
-    // Taken out, so that the lock is free while threads end.
+    // The clocks are taken out of the list, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
     let (live, ended): (Vec<Clock>, Vec<Clock>) =
         clocks.into_iter().partition(|clock| clock.engine.upgrade().is_some());
     for clock in ended {
-        // The thread only counts: it cannot have panicked.
+        // The thread only counts, so it cannot have panicked.
         let _ = clock.thread.join();
     }
     let mut clocks = CLOCKS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -68,7 +69,8 @@ impl ClockedEngine {
         let counting = move || {
             while let Some(engine) = clock.upgrade() {
                 engine.increment_epoch();
-                // Kept during the sleep, it would keep an unused engine alive.
+                // If this reference were kept during the sleep, it would keep an unused engine
+                // alive.
                 drop(engine);
                 std::thread::sleep(tick);
             }
@@ -91,7 +93,7 @@ impl ClockedEngine {
     }
 }
 
-/// Returns an engine without a clock. Only running modules needs a clock.
+/// Returns an engine without a clock. A clock is only needed to run modules.
 pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, CompileError> {
     let mut config = Config::new();
     if effort == Effort::Quick {
@@ -104,8 +106,8 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
         .consume_fuel(limits.fuel.is_some())
         .max_wasm_stack(limits.stack_bytes)
         .signals_based_traps(limits.engine == WasmEngine::Signals)
-        // Relaxed operations have different results on different machines. The calls here support
-        // only one 32-bit memory.
+        // Relaxed SIMD operations have different results on different machines. The host's code
+        // supports only one 32-bit memory.
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);

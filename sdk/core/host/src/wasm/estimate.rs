@@ -1,11 +1,11 @@
-//! Estimates how long the compilation of a module will take, before it begins. The estimate is an
+//! Estimates, before the compilation of a module begins, how long it will take. The estimate is an
 //! upper bound.
 //!
-//! The compiler's time and memory can grow faster than the size of the module. There are three
-//! reasons: a function has many operators, values are live across branches or merge where blocks
-//! end, or blocks are nested. The estimate is a sum with one term for each of these reasons. In a
-//! comparison with measured times, the sum was above the measured time of every module, and at most
-//! three times the measured time.
+//! The compiler's time and memory can grow faster than the size of the module. This has three
+//! possible reasons: functions have many operators, values stay live across branches or merge at
+//! the ends of blocks, or blocks are nested. The estimate is a sum with one term for each of these
+//! reasons. In a comparison with measured times, the sum was above the measured time of every
+//! module, and at most three times the measured time.
 //!
 //! If the estimate of a module exceeds the limit, the host compiles the module without optimisation
 //! and with a single-pass register allocator ([`super::engine::Effort::Quick`]), which takes nearly
@@ -52,8 +52,8 @@ pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {
 /// Returns the time of a section's entries, microseconds.
 fn section_us(section: &Payload<'_>) -> f64 {
     match section {
-        // All coefficients in this file are microseconds on the machine where they were measured;
-        // `SLOWER` in `compile.rs` allows for slower machines.
+        // All coefficients in this file are microseconds, measured on one machine. `SLOWER` in
+        // `compile.rs` allows for slower machines.
         Payload::TypeSection(s) => 25.0 * f64::from(s.count()) + s.range().len() as f64,
         Payload::GlobalSection(s) => f64::from(s.count()),
         Payload::ExportSection(s) => f64::from(s.count()),
@@ -74,8 +74,9 @@ fn function_us(
     let mut cost = Cost::new(f64::from(function.len_locals()));
     while !operators.eof() {
         let (operator, at) = operators.read_with_offset()?;
-        // Before the validator takes the operator, because its stack is then still the one that the
-        // operator meets. So an operator that is counted here may be invalid.
+        // The operator is counted before the validator processes it, because the validator's stack
+        // is then still the stack before the operator. Therefore, an operator that is counted here
+        // may be invalid.
         cost.add(&operator, &function);
         function.op(at, &operator)?;
     }
@@ -89,7 +90,8 @@ struct Cost {
     locals: f64,
     operators: f64,
     blocks: f64,
-    /// Number of values that may differ between the paths to a merge point, summed over all paths.
+    /// Number of values that may differ between the paths to a merge point. Each value counts once
+    /// for each path.
     joined: f64,
     /// The blocks that contain the current operator, from the function's body inwards.
     around: Vec<Block>,
@@ -107,7 +109,7 @@ struct Block {
 impl Cost {
     fn new(locals: f64) -> Self {
         let mut us = Estimate::default();
-        // Even an empty function takes time, and a module may have very many.
+        // Even an empty function takes time, and a module may have very many functions.
         us.add(40.0 + 0.1 * locals);
         Self {
             us,
@@ -176,7 +178,7 @@ impl Cost {
         }
     }
 
-    /// Adds a branch. A branch to a loop merges all live values there.
+    /// Adds a branch. If it is a branch to a loop, all live values merge at the head of the loop.
     fn branch(&mut self, relative_depth: u32, live: f64) {
         // The branch has not been validated yet, so its depth may be too large.
         let at = self.around.len().checked_sub(1 + relative_depth as usize);
@@ -191,7 +193,8 @@ impl Cost {
     }
 
     fn estimate(self) -> Estimate {
-        // Without optimisation the time is nearly linear, so the quick estimate has no squares.
+        // Without optimisation the time is nearly linear, so the quick estimate has no quadratic
+        // terms.
         let n = self.operators;
         Estimate {
             optimised_us: self.us.optimised_us
@@ -243,8 +246,8 @@ fn more_us(operator: &Operator<'_>) -> f64 {
 mod tests {
     use super::*;
 
-    /// A function with a hundred nested blocks, each with assignments and with branches to outer
-    /// blocks, took 1.25 s of processor time to compile with all optimisations.
+    /// The function has a hundred nested blocks. Each block has assignments, and branches to outer
+    /// blocks. Compiling it with all optimisations took 1.25 s of processor time.
     #[test]
     fn branches_out_of_nested_blocks_take_long() {
         let (mut body, mut n) = (String::new(), 0);

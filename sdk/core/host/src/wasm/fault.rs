@@ -4,7 +4,7 @@ use htex_model::Status;
 
 use crate::sandbox::BudgetError;
 
-/// An error of calling a module, after which its instance is not used again.
+/// An error of a call to a module. After such an error, the instance is not used again.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(super) enum Fault {
     #[error(transparent)]
@@ -53,6 +53,6 @@ pub(super) enum Fault {
 }
 
 impl Fault {
-    /// The status of a call that faulted.
+    /// The status that a call with a fault returns.
     pub(super) const STATUS: i64 = Status::Failed as i64;
 }

@@ -1,4 +1,4 @@
-//! The functions of a module, which each engine looks up by their names.
+//! The functions of a module. Each engine looks them up by their names.
 
 use htex_base::native::table_of_symbols;
 

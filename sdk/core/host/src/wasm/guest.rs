@@ -26,11 +26,12 @@ impl Guest {
         store.limiter(|usage| usage);
         let time = limits.call.min(module.budget.time_left()?);
         let fault = |e| Fault::from_trap(&e, limits, time.as_millis());
-        // The start function is code of the module too, so it gets a deadline.
+        // The start function is also code of the module, so it gets a deadline.
         arm(&mut store, module, time).map_err(fault)?;
         let start = Instant::now();
         let raw = Instance::new(&mut store, &module.module, &[]);
-        // Before the result is checked: a failed start has also taken time.
+        // The time is subtracted before the result is checked, because a failed start has also
+        // taken time.
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
         let memory = raw.get_memory(&mut store, "memory").ok_or(Fault::NoMemory)?;

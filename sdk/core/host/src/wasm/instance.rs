@@ -21,11 +21,11 @@ pub(super) struct Instance {
     /// The time left for a voice, if this is the instance of a voice. Other instances use the time
     /// of the modules' budget.
     allowance: Option<Allowance>,
-    /// Address and length of the buffer; length 0 until it is allocated.
+    /// Address and length of the buffer. The length is 0 until the buffer is allocated.
     buffer: (Usize, Usize),
 }
 
-/// Guard bytes behind an array. They reveal a call that writes beyond the array.
+/// Guard bytes behind an array. If a call writes beyond the array, these bytes change.
 const GUARD: [u8; 4096] = [0xA5; 4096];
 
 /// The time limit of a call.
@@ -101,7 +101,8 @@ impl Instance {
         self.spend(taken);
         let returned = self.guest.returned(&self.module, result, taken, time);
         returned.map_err(|fault| match self.time_left() {
-            // The interruption does not say which limit it came from, but an empty budget does.
+            // The fault does not say which limit stopped the call. If a budget is empty, that
+            // budget was the limit.
             Err(used_up) => Fault::Stopped(Box::new(used_up)),
             Ok(_) => fault,
         })
@@ -124,18 +125,20 @@ impl Instance {
             return Ok(self.buffer.0);
         }
         let too_much = || Fault::TooManyBytes { bytes, most: self.module.limits.memory_bytes };
-        // Powers of two, so that slowly growing calls rarely need a new buffer.
+        // The size is rounded up to a power of two, so that calls whose data grows slowly rarely
+        // need a new buffer.
         let bytes = bytes.next_power_of_two();
         let fits = bytes <= self.module.limits.memory_bytes;
         let len = Usize::try_from(bytes).ok().filter(|_| fits).ok_or_else(too_much)?;
-        // Forgotten first: if a call below fails, no freed address stays behind.
+        // The old buffer is removed from `self` first. If a call below fails, `self` does not keep
+        // a freed address.
         let old = std::mem::take(&mut self.buffer);
         if old.1 > 0 {
             self.call(Deadline::Call, |f| &f.free, old)?;
         }
         let at = self.call(Deadline::Call, |f| &f.alloc, len)?;
-        // In 64 bits, because the address is the module's own answer and the sum may exceed 32
-        // bits.
+        // The sum is computed with 64 bits, because the address comes from the module, and the sum
+        // may exceed 32 bits.
         let inside = u64::from(at) + u64::from(len) <= self.memory_bytes() as u64;
         if at == 0 || at % 8 != 0 || !inside {
             return Err(Fault::Allocation { at, len });
@@ -154,12 +157,12 @@ impl Instance {
         self.guest.write(at, text)
     }
 
-    /// Writes guard bytes behind an array, if the limits ask for them.
+    /// Writes guard bytes after an array if the limits require this.
     pub(super) fn guard(&mut self, behind: Usize) -> Result<(), Fault> {
         if self.module.limits.guards { self.guest.write(behind, &GUARD) } else { Ok(()) }
     }
 
-    /// Returns an error if a call wrote to the guard bytes behind an array of `len` values. `bound`
+    /// Returns an error if a call wrote to the guard bytes after an array of `len` values. `bound`
     /// is the name of the argument that states the length.
     pub(super) fn unharmed(
         &self,

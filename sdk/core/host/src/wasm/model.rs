@@ -16,7 +16,7 @@ use crate::HostError;
 use crate::raw::{RawModel, RawVoice, check_marker};
 
 std::thread_local! {
-    /// The text of this thread's last error, as in a native model.
+    /// The text of this thread's last error. A native model also stores it for each thread.
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
@@ -39,11 +39,11 @@ impl WasmModel {
             message: fault.to_string(),
         })?;
         check_marker(origin, marker)?;
-        // A module that fails here does not have the extension. A failed instance is not used
-        // again.
+        // If the call fails, the module counts as a module without the extension. A failed instance
+        // is not used again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
-                // The first instance was made without the functions of the extension, so it is
+                // The first instance does not include the functions of the extension, so it is
                 // replaced.
                 module.shared.require_motion();
                 Some(first(&module, origin)?)

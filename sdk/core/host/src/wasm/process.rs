@@ -38,7 +38,7 @@ pub(super) fn compile(
     let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
     let (sender, receiver) = mpsc::channel();
     let result = std::thread::scope(|scope| {
-        // If the process ends early, its missing reply reveals that.
+        // An error of writing is ignored. If the process ends early, the missing reply shows this.
         scope.spawn(move || stdin.map(|mut pipe| pipe.write_all(module)));
         scope.spawn(move || {
             let mut bytes = Vec::new();
@@ -115,8 +115,8 @@ impl Request {
             signals: limits.engine == WasmEngine::Signals,
             stack_bytes: limits.stack_bytes,
             memory_bytes: limits.compile_bytes,
-            // The limit of the system has whole seconds, so it is rounded up. The host's own timer
-            // is exact.
+            // The operating system takes the limit in whole seconds, so it is rounded up. The
+            // host's own timer is exact.
             time_s: time.as_secs() + 1,
         }
     }
@@ -149,7 +149,8 @@ impl Request {
     fn compile(self, module: &[u8]) -> Result<Vec<u8>, CompileError> {
         let limits = WasmLimits {
             stack_bytes: self.stack_bytes,
-            // The machine code depends on whether instructions are counted, but not on their limit.
+            // The machine code depends on whether instructions are counted, but not on the limit of
+            // their number.
             fuel: self.fuel.then_some(1),
             engine: if self.signals { WasmEngine::Signals } else { WasmEngine::Checked },
             ..WasmLimits::default()
@@ -159,7 +160,7 @@ impl Request {
         Ok(module.serialize()?)
     }
 
-    /// Sets limits that end this process if it exceeds them, without a core dump.
+    /// Sets limits of time and memory. If this process exceeds them, it ends without a core dump.
     #[cfg(unix)]
     fn limit_this_process(self) -> Result<(), CompilerError> {
         use rustix::process::{Resource, Rlimit, setrlimit};

@@ -29,7 +29,7 @@ impl Shared {
     }
 }
 
-/// One counted voice, released when it is dropped.
+/// Counts one voice. The count is decreased when this value is dropped.
 pub(super) struct VoicePlace(Arc<Shared>);
 
 impl Drop for VoicePlace {

@@ -38,8 +38,9 @@ impl Drop for Usage {
     }
 }
 
-/// Stops an instance that exceeds a limit. The functions return an error, which stops the instance;
-/// with `false` it would continue, and only the instruction that requested memory would fail.
+/// Stops an instance that exceeds a limit. The functions return an error, which stops the instance.
+/// If they returned `false` instead, the instance would continue, and only the instruction that
+/// requested memory would fail.
 impl ResourceLimiter for Usage {
     fn memory_growing(
         &mut self,

@@ -20,7 +20,7 @@ pub(super) struct WasmVoice {
     instance: Instance,
     handle: i64,
     last_error: String,
-    /// Whether the instance trapped. If so, it is not called again.
+    /// Whether the instance trapped. After a trap, the host does not call the instance again.
     faulted: bool,
     _place: VoicePlace,
 }
@@ -43,7 +43,8 @@ impl WasmVoice {
         if handle == 0 {
             return Err(fault(Fault::HandleZero));
         }
-        // Only now, so that creating the voice counts for the budget of all modules.
+        // The limit is set only now, so that the time for creating the voice counts towards the
+        // budget of all modules.
         instance.limit_as_voice(rate_hz);
         Ok(Self { instance, handle, last_error: String::new(), faulted: false, _place: place })
     }
@@ -75,7 +76,7 @@ impl RawVoice for WasmVoice {
             if status != 0 {
                 return status;
             }
-            // Only after success: a call that fails earns no time.
+            // Time is added only after success, so that a call that fails adds no time.
             self.instance.earn(block.len());
         }
         0

@@ -1,8 +1,9 @@
 //! Models that describe a spectrum by a curve and play it as noise.
 //!
 //! Every type that implements [`ShapedModel`] also implements [`Model`]. Such a type names another
-//! type, which implements [`Curve`]. This module derives the magnitude at unit RMS, the sample rate
-//! and the voice ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
+//! type, which implements [`Curve`]. From the curve, this module derives the magnitude at unit RMS,
+//! the sample rate and the voice ([`ShapedVoice`]). By default, it interpolates parameters
+//! linearly.
 mod places;
 
 use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
@@ -169,7 +170,7 @@ impl<M: ShapedModel> Model for M {
     }
 }
 
-/// Refuses a curve that is zero or not finite everywhere in the band.
+/// Returns an error if the curve is zero everywhere in the band, or not finite.
 fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
     let level = C::new(parameters, band)?.level();
     if level > 0.0 && level.is_finite() { Ok(()) } else { Err(Error::parameters(NO_SPECTRUM)) }
@@ -194,8 +195,8 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 ///   at once, or at the end of a cross-fade (10 ms) if one is in progress. `set` and `fill` run on
 ///   the render thread and must not allocate.
 ///
-/// `magnitude_at` and `fill` may return values in any scale, and their scales may differ, because
-/// the voice normalises its samples to unit RMS in the band.
+/// The values of `magnitude_at` and `fill` may have any scale, and the two scales may differ,
+/// because the voice normalises its samples to unit RMS in the band.
 ///
 /// # Known doubt
 ///
@@ -244,7 +245,7 @@ pub trait Curve: Sized + Send + 'static {
     /// spectrum, all values are zero or not finite. `[render thread, no allocation]`
     ///
     /// A voice calls [`Self::set`] with every retune, but does not call `fill` during a cross-fade
-    /// (10 ms). So slow computations belong in `fill` and not in `set`.
+    /// (10 ms). Therefore, slow computations belong in `fill` and not in `set`.
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             *m = self.magnitude_at(f);
@@ -271,8 +272,8 @@ pub fn magnitude<C: Curve>(
     Ok(())
 }
 
-/// Returns the rate in hertz at which a [`ShapedVoice`] renders: an integer fraction of
-/// `wanted_hz`, as low as the band allows.
+/// Returns the rate in hertz at which a [`ShapedVoice`] renders. It is `wanted_hz` divided by an
+/// integer, and is as low as the band allows.
 pub fn voice_rate_hz(band: Band, wanted_hz: f64) -> f64 {
     economical_rate_hz(wanted_hz, band)
 }
@@ -296,7 +297,8 @@ impl<C: Curve> ShapedVoice<C> {
     ) -> Result<Self, Error> {
         let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        // `magnitude_at` and not `fill`, which needs the frequencies that `prepare` gets only now.
+        // `fill` cannot be used here, because it needs the frequencies that `prepare` gets only
+        // below. So the noise starts with the values of `magnitude_at`.
         noise.start(|_, f| curve.magnitude_at(f));
         curve.prepare(noise.component_hz(), noise.components_key());
         Ok(Self { curve, noise })

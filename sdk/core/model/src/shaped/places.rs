@@ -11,8 +11,8 @@ use htex_dsp::shared::Shared;
 /// Voices with the same rate and band share one table.
 pub struct Places(Vec<BinPosition>);
 
-/// Position between two neighbouring bins: the lower bin, and the fraction of the way to the next
-/// bin.
+/// Position between two neighbouring bins: the lower bin, and the distance from it as a fraction of
+/// a bin.
 struct BinPosition {
     below: u32,
     part: f64,

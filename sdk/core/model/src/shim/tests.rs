@@ -1,7 +1,7 @@
 use super::*;
 use crate::{Band, Numbers};
 
-/// A model whose voices count up, starting at the seed or the finger's position.
+/// A model whose voices count up from the seed or from the finger's position.
 struct Counting;
 struct Counter(f32);
 

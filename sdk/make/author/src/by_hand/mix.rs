@@ -113,7 +113,8 @@ pub fn mix(
     asset.manifest.fluctuation = htex_format::Fluctuation::from_db(
         [0, 1].map(|range| (1.0 - weight) * of_a[range] + weight * of_b[range]),
     );
-    // A mixture of coded assets is coded too. Any other can be read wherever its parts can.
+    // A mixture of two coded assets is also coded. Any other mixture is not coded, so that every
+    // reader of the two textures can read it.
     Ok(if a.asset.manifest().is_coded() && b.asset.manifest().is_coded() {
         asset.coded()
     } else {
@@ -155,7 +156,8 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
     Ok(all)
 }
 
-/// Whether two conditions agree in speed and force, as far as these are known.
+/// Returns whether two conditions have the same speed and force. A value that is unknown in both
+/// conditions counts as equal.
 pub(super) fn is_same(a: &Condition, b: &Condition) -> bool {
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Condition::is_same(a, b),
@@ -172,7 +174,8 @@ fn of_model<'a>(manifest: &'a Manifest, model: &str) -> &'a [Triangle] {
 }
 
 /// Returns the triangles that `from` stores for a mixed model, as indices into the mixed model's
-/// `at`. Empty if the mixed conditions are not the texture's own.
+/// `at`. The list is empty if the conditions of the mixture differ from the texture's own
+/// conditions.
 fn triangles(from: &Manifest, mixed: &Representation, conditions: &[Condition]) -> Vec<Triangle> {
     let own = from.representations.iter().find(|r| r.model == mixed.model);
     let Some(own) = own.filter(|own| own.at.len() == mixed.at.len()) else {
@@ -213,8 +216,8 @@ fn mixed(
         let (first, first_level) = a.asset.representation(model.id())?.parameters(Some(motion))?;
         let (second, second_level) =
             b.asset.representation(model.id())?.parameters(Some(motion))?;
-        // With a weight of 0 or 1 the model does not interpolate: this could change the last digit,
-        // or fail for a model that cannot interpolate.
+        // With a weight of 0 or 1, the parameters are copied. Interpolation could change their last
+        // digit, or fail for a model that cannot interpolate.
         let flat = match weight {
             0.0 => first,
             1.0 => second,

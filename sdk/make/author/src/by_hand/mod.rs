@@ -3,7 +3,7 @@
 //! (Balasubramanian & Vardar 2026, Discussion).
 //!
 //! An asset of such a texture stores how the texture was made ([`htex_format::Made`]). The asset
-//! stores no measures of quality, because there is no recording to compare it with.
+//! stores no measures of quality, because there is no recording with which to compare the texture.
 
 mod mix;
 mod parameters;

@@ -188,8 +188,8 @@ fn representation(
     for own in &of.at {
         let flat = flat(model, &own.values)?;
         let stored = round_within(&fields, model.descriptor(), &flat)?;
-        // Computed even if the level is given: the model may refuse parameters that are in range
-        // one by one.
+        // The spectrum is computed even if the level is given. Each parameter may be in its range,
+        // and the model may still refuse the combination.
         let magnitude = model.magnitude(&stored, band, &band.grid_hz())?;
         let level_rms = match own.level_rms {
             Some(level_rms) => level_rms,

@@ -7,9 +7,9 @@
 //! side lobes are 92 dB down (four-term Blackman-Harris; Harris 1978). The check computes the power
 //! in the band with each of the two windows, and compares the two powers. In 240 third-party
 //! recordings of fingers, tools and microphones, the short segments show at most 4.3 dB more power
-//! than the long segments. If the normal forces and positions from recordings of fingers are read
-//! by mistake as a texture, the short segments show at least 32 dB more. For noise of 1 to 15 Hz,
-//! the short segments show at least 11 dB more.
+//! than the long segments. If a normal force or a position from a recording of a finger is read by
+//! mistake as a texture, the short segments show at least 32 dB more power. For noise of 1 to 15
+//! Hz, they show at least 11 dB more power.
 
 use std::f64::consts::TAU;
 
@@ -24,8 +24,8 @@ use crate::Recording;
 use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
 use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
 
-/// A recording has a finding if its segments show at least this many times the power in the band
-/// that long windows show: 7 dB, so that four fifths of the power leak.
+/// A recording has a finding if its segments show at least this many times as much power in the
+/// band as long windows do. The factor is 7 dB, i.e. four fifths of the power leak into the band.
 const LEAKS: f64 = 5.0;
 /// A recording has a finding if its power above the band is at least this many times its power in
 /// the band: 30 dB. White noise at 192 kHz has 20 dB. The microphones that were tried have up to
@@ -33,11 +33,11 @@ const LEAKS: f64 = 5.0;
 const ABOVE: f64 = 1000.0;
 /// Segments in a long window: one second.
 const LONG: usize = SEGMENTS_PER_S as usize;
-/// Smallest power in the band that is judged, for a recording whose largest value is 1. A smaller
-/// power is only the rounding error of a constant signal.
+/// For a recording whose largest value is 1, only a power in the band of at least this number is
+/// judged. A smaller power is only the rounding error of a constant signal.
 const LEAST: f64 = 1e-24;
-/// Most samples in a long window, which limits memory. If two segments have more samples than this,
-/// the recording is not checked.
+/// Largest number of samples in a long window, to limit memory. If two segments have more samples
+/// than this, the recording is not checked.
 const MOST: usize = 1 << 22;
 /// Four-term Blackman-Harris window.
 const COSINES: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
@@ -89,7 +89,7 @@ struct Power {
     above: f64,
 }
 
-/// The power that the segments show in the band, and the powers that long windows show.
+/// The power in the band that the segments show, and the powers that long windows show.
 struct Powers {
     shown: f64,
     long: Power,
@@ -111,8 +111,8 @@ impl Powers {
         let mut next = 0;
         let is_due = |start: &usize| {
             let is_due = *start >= next;
-            // Segments overlap, and a window of one second around each of them would read the same
-            // samples ten times.
+            // Segments overlap. If each segment had a window of one second around it, the same
+            // samples would be read ten times.
             next = if is_due { start + long_len / 2 } else { next };
             is_due
         };
@@ -128,7 +128,7 @@ impl Powers {
 
 /// Periodic four-term Blackman-Harris window.
 fn blackman_harris(len: usize) -> Vec<f64> {
-    // The remainder keeps the angle below one turn, where the cosine has all its digits.
+    // The remainder keeps the angle below one turn, so that the cosine is precise.
     let cosine = |k: usize, i: usize| libm::cos(TAU * (k * i % len) as f64 / len as f64);
     let value = |i| (0..4).map(|k| COSINES[k] * cosine(k, i)).sum();
     (0..len).map(value).collect()
@@ -180,13 +180,13 @@ impl<'a> Reader<'a> {
         Power { inside: scale * sum.inside, above: scale * sum.above }
     }
 
-    /// Removes a stretch's mean or line, and multiplies it by the window.
+    /// Removes the mean or the line from a stretch, and multiplies the stretch by the window.
     fn window(&self, stretch: &[f64], windowed: &mut [f64]) {
         let (count, scale) = (stretch.len() as f64, self.scale);
         let mean = lanes::sum(stretch, |_, x| x * scale) / count;
         let middle = 0.5 * (count - 1.0);
         let slope = if self.is_level {
-            // The denominator is the sum of the squared distances from the middle.
+            // The denominator, divided by 12, is the sum of the squared distances from the middle.
             12.0 * lanes::sum(stretch, |at, x| (at - middle) * (x * scale))
                 / (count * (count * count - 1.0))
         } else {

@@ -11,8 +11,8 @@ use htex_recording::rules::RECORDING_FRICTION_COEFFICIENT;
 /// Fewest 0.2 s windows of sliding needed to judge how the lateral force depends on the normal
 /// force.
 const FEWEST: usize = 20;
-/// Smallest standard deviation of the logarithm of the normal force: 5 %. Where a finger tries to
-/// keep its force constant, the deviation is 2 to 3 %.
+/// Smallest standard deviation of the logarithm of the normal force: 5 %. If a person tries to keep
+/// the force constant, the deviation is 2 to 3 %.
 const LEAST_SPREAD: f64 = 0.05;
 /// If the exponent of the normal force plus two standard errors is at most this, the lateral force
 /// counts as independent of the normal force. For forces on simulated surfaces and in three free
@@ -37,7 +37,7 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
         return;
     };
-    // Includes the error, so that an uncertain slope is no finding.
+    // The error is included, so that an uncertain slope does not cause a finding.
     if line.slope.abs() + 2.0 * line.error > LARGEST_EXPONENT {
         return;
     }

@@ -10,15 +10,16 @@ use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 /// Fewest segments of a recording that is checked: 1 s. For a shorter time, the friction of a
 /// finger may rise along a line.
 const FEWEST_SEGMENTS: usize = 5;
-/// A signal counts as a ramp from this fraction of its variance along a straight line. In 240
-/// third-party recordings of fingers, tools and microphones, which last 0.8 to 19 s, the fraction
-/// is at most 0.80. For the normal force of a finger it is at most 0.84.
+/// A signal counts as a ramp if a straight line explains at least this fraction of its variance. In
+/// 240 third-party recordings of fingers, tools and microphones, which last 0.8 to 19 s, the
+/// fraction is at most 0.80. For the normal force of a finger it is at most 0.84.
 const ALONG_LINE: f64 = 0.99;
 /// Longest period of alternating values that is detected, samples: four channels interleaved in one
 /// column.
 const LONGEST: usize = 4;
-/// A signal counts as alternating if the place of a sample within such a period explains this
-/// fraction of the variance. In the third-party recordings the fraction is at most 0.0005.
+/// A signal counts as alternating if the position of a sample within such a period explains at
+/// least this fraction of the variance. In the third-party recordings the fraction is at most
+/// 0.0005.
 const BY_PLACE: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -60,7 +61,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     true
 }
 
-/// Number of samples after which the places within all periods up to [`LONGEST`] repeat.
+/// After this number of samples, the positions within all periods up to [`LONGEST`] repeat.
 const ROUND: usize = 12;
 
 /// Sums over the values of an axis, from which the mean is subtracted. The values are relative to
@@ -68,9 +69,9 @@ const ROUND: usize = 12;
 struct CentredSums {
     count: usize,
     squares: f64,
-    /// Sum of the values, each times its sample index.
+    /// Sum over all values of the value times its sample index.
     moment: f64,
-    /// For each place within [`ROUND`] samples, the sum of the values there.
+    /// For each position within [`ROUND`] samples, the sum of the values at this position.
     places: [f64; ROUND],
 }
 
@@ -103,12 +104,13 @@ impl CentredSums {
     fn along_line(&self) -> f64 {
         let count = self.count as f64;
         let both = self.moment - 0.5 * (count - 1.0) * self.places.iter().sum::<f64>();
-        // The sum of the squares of the sample numbers, from which their mean is subtracted.
+        // The mean is subtracted from the sample indices. This is the sum of the squares of the
+        // results.
         let own = count * (count * count - 1.0) / 12.0;
         both * both / (own * self.squares)
     }
 
-    /// Returns the fraction of the variance that the place within a period explains. The period
+    /// Returns the fraction of the variance that the position within a period explains. The period
     /// must divide [`ROUND`].
     fn by_place(&self, period: usize) -> f64 {
         let of_place = |place: usize| {

@@ -8,10 +8,11 @@ use crate::SegmentSpectra;
 use htex_recording::rules::RECORDING_LEVELS_DIFFER;
 
 /// A recording is reported if its level differs by more than this factor from the median of its
-/// condition: 8 dB. In ten slides over each of 20 materials by a robot, no slide differs by more
-/// than 5.0 dB from its material's median. The two slides of a material that are furthest apart
-/// differ by 6.2 dB.
-// Ten to the power of 8 / 20, written out because a constant cannot call libm.
+/// condition: 8 dB. A robot slid ten times over each of 20 materials. No slide differs by more than
+/// 5.0 dB from the median of its material. The largest difference between two slides over the same
+/// material is 6.2 dB.
+// This is ten to the power of 8 / 20. The digits are written out, because a constant cannot call
+// libm.
 const DIFFERS: f64 = 2.511_886_431_509_58;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.

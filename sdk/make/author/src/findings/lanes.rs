@@ -1,6 +1,6 @@
 //! Sums and maxima of long signals. A sum is computed as eight independent partial sums, so that no
-//! addition waits for the result of the previous addition. The order of the additions changes only
-//! the last digits of a sum. No finding depends on these digits.
+//! addition has to wait for the result of the previous addition. The order of the additions affects
+//! only the last digits of a sum, and no finding depends on these digits.
 
 const LANES: usize = 8;
 
@@ -21,7 +21,7 @@ pub(super) fn sum(values: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// Returns the largest `term(value)` of all values; minus infinity if there are no values.
 pub(super) fn largest(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
-    // `f64::max` also compares with NaN, which no term is.
+    // `f64::max` also handles NaN, but no term is NaN.
     let larger = |most: f64, x: f64| if x > most { x } else { most };
     let (rounds, rest) = values.as_chunks::<LANES>();
     let mut most = [f64::NEG_INFINITY; LANES];

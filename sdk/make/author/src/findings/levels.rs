@@ -11,19 +11,19 @@ use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 /// quantisation noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the
 /// spectrum itself.
 const FEWEST_LEVELS: usize = 16;
-/// A signal counts as clipped from this fraction of all samples at an extreme value. Noise clipped
-/// at 2.3 times its RMS reaches this fraction, with a distortion of -24 dB. Less clipping does not
-/// justify another recording.
+/// A signal counts as clipped if at least this fraction of all samples is at an extreme value.
+/// Noise clipped at 2.3 times its RMS reaches this fraction, with a distortion of -24 dB. Less
+/// clipping does not justify another recording.
 const CLIPPED: f64 = 0.01;
-/// Smallest ratio of the number of samples at the extreme value to the number in the range next to
-/// it ([`BESIDE`]). At the top of a quantised sine the ratio is two.
+/// The number of samples at the extreme value must be at least this many times the number of
+/// samples in the range next to it ([`BESIDE`]). At the top of a quantised sine the ratio is two.
 const OVER_BESIDE: usize = 4;
 /// Width of the range next to the extreme value, relative to the whole range; at least one step of
 /// the converter. A texture on a plateau fills a few percent of the whole range densely and must
 /// not count as one value.
 const BESIDE: f64 = 0.001;
-/// Fewest separate visits to the limit; a signal that reaches it only once or twice is stuck
-/// instead.
+/// Fewest separate visits to the limit. If a signal reaches the limit only once or twice, it counts
+/// as stuck and not as clipped.
 const FEWEST_VISITS: usize = 3;
 /// Smallest distance of a limit from zero, relative to the mean magnitude. If a value is closer to
 /// zero, the finger is at rest.
@@ -60,7 +60,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
     }
     match count_levels(values) {
         1 => return Levels::ClippedAt(Vec::new()),
-        // Counting stops there, so this means "that many or more".
+        // Counting stops at this number, so the signal has this many or more different values.
         FEWEST_LEVELS => {}
         levels => {
             findings.add(RECORDING_COARSE, format!("/{name}"), format!(
@@ -123,8 +123,8 @@ fn clip(values: &[f64], side: f64, magnitude: f64) -> Option<Clip> {
     let bottom = -lanes::largest(values, |value| -side * value);
     let below_top = |value| if side * value < top { side * value } else { f64::NEG_INFINITY };
     let second = lanes::largest(values, below_top);
-    // A converter with coarse steps has no value within this fraction, so the next value counts as
-    // well.
+    // If the steps of a converter are coarse, no value lies within this fraction. Therefore, the
+    // next lower value also counts.
     let beside = second.min(top - BESIDE * (top - bottom));
     let sided = || values.iter().map(|value| side * value);
     let count = sided().filter(|value| *value == top).count();

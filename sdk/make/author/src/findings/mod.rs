@@ -46,7 +46,8 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     for axis in 0..recording.axes.len() {
         let levels = levels::judge(recording, axis, &mut findings);
         let has_course = course::judge_axis(recording, axis, &mut findings);
-        // A ramp or a coarse signal also leaks into the band, but its own finding says more.
+        // A ramp or a coarse signal also leaks into the band, but the finding for the ramp or the
+        // coarse signal is more specific.
         is_texture &= !has_course && matches!(levels, Levels::ClippedAt(_));
         if let Levels::ClippedAt(clips) = levels {
             stuck::judge_axis(recording, axis, &clips, &mut findings);
@@ -56,7 +57,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     if is_texture {
         band::judge(recording, &mut findings);
     }
-    // Where the texture is the normal force, its axis has just been checked.
+    // If the normal force is the texture, its axis has just been checked.
     if recording.quantity != Quantity::NormalForce {
         stuck::judge_normal(recording, &mut findings);
         spikes::judge_normal(recording, &mut findings);

@@ -12,11 +12,11 @@ use htex_recording::rules::{
 /// a light touch, where adhesion dominates. The limit is twice as high, to allow for offsets of the
 /// sensors.
 const LARGEST_FRICTION: f64 = 10.0;
-/// Speed below which the finger counts as standing still, mm/s. The skin yields by a millimetre,
-/// and at this speed it takes a quarter of an hour to stretch that far.
+/// Speed below which the finger counts as standing still, mm/s. The skin can stretch by a
+/// millimetre, which takes a quarter of an hour at this speed.
 const STILL_MM_S: f64 = 1e-3;
-/// Range of exploration speeds, mm/s. The slowest tribometers for fingers run at 1 mm/s; the hand
-/// of a fully swinging arm reaches 2 m/s.
+/// Range of exploration speeds, mm/s. The slowest tribometers for fingers run at 1 mm/s. If a
+/// person swings the whole arm, the hand reaches 2 m/s.
 const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
 /// The quantile of the speed that is checked. Slower samples may belong to turns and pauses.
 const SLIDING: f64 = 0.75;

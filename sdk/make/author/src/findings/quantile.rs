@@ -1,7 +1,7 @@
 //! Quantiles of long signals.
 
-/// Largest number of values that are sorted. Quantiles of this many evenly spaced samples scatter
-/// by less than a percent.
+/// Largest number of values that are sorted. If quantiles are computed from this many evenly spaced
+/// samples, they scatter by less than a percent.
 const MOST: usize = 20_000;
 
 /// Defines how quantiles are computed, for `spec/recording-findings.md`.
@@ -12,8 +12,8 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Returns the quantile `part` (0 to 1) of the values; for long signals, the quantile of evenly
-/// spaced samples. `None` if there are no values.
+/// Returns the quantile `part` (0 to 1) of the values. For long signals, computes it only from
+/// evenly spaced samples. `None` if there are no values.
 pub(crate) fn quantile(part: f64, len: usize, value: impl Fn(usize) -> f64) -> Option<f64> {
     let places = (0..len).step_by(len.div_ceil(MOST).max(1));
     let mut keys: Vec<i64> = places.map(|at| key(value(at).to_bits() as i64)).collect();

@@ -8,8 +8,9 @@ use htex_recording::rules::{
     RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN,
 };
 
-/// A segment this many times louder than the median of all segments is reported: 12 dB. Changes of
-/// force and speed within 10 % cause about 1 dB. Seams and knots of a material cause a few dB.
+/// A segment is reported if its level exceeds the median of all segments by more than this factor,
+/// which is 12 dB. Changes of force and speed within 10 % cause about 1 dB. Seams and knots of a
+/// material cause a few dB.
 const LOUD: f64 = 4.0;
 /// Loud segments are reported only if they are rare: at most one segment in this many.
 const EXCEPTION: usize = 4;
@@ -78,7 +79,8 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         .filter(|(_, level)| usual > 0.0 && **level > LOUD * usual)
         .map(|(start, level)| (*start, *level))
         .collect();
-    // If many segments are loud, the motion changes throughout, which other findings report.
+    // If many segments are loud, the motion changes during the whole recording. Other findings
+    // report this.
     let Some((first, _)) = loud.first().filter(|_| loud.len() <= levels.len() / EXCEPTION) else {
         return;
     };

@@ -3,7 +3,7 @@
 //! A corner is the difference between a sample and the mean of its two neighbours. A texture itself
 //! has sharp corners (stick and slip), so a large number of corners does not prove that there are
 //! outliers. To repair a sample means to replace it by a value interpolated from its neighbours. A
-//! texture's corner lasts several samples, so the corner remains when one sample is repaired. The
+//! corner of a texture lasts several samples, so it remains if only one sample is repaired. The
 //! corner of a single-sample outlier disappears when the outlier is repaired. In each of 240
 //! third-party recordings, such repairs remove at most four of the corners that have 12 times the
 //! usual size. Corners of five times the usual size disappear at no more than 0.1 % of a
@@ -21,15 +21,15 @@ use htex_recording::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 
 /// Length of the blocks in which the largest second difference is found, seconds.
 const BLOCK_S: f64 = 0.1;
-/// A sample is a spike if its second difference is this many times the usual one. With 100 times
-/// the usual energy, one sample raises the highest bands of a segment by about 1.5 dB at 20 kHz and
-/// by 7 dB at 1 kHz.
+/// A sample is a spike if its second difference exceeds the usual one by this factor. Such a sample
+/// has 100 times the usual energy. It raises the highest bands of a segment by about 1.5 dB at a
+/// sample rate of 20 kHz, and by 7 dB at 1 kHz.
 const SPIKE: f64 = 10.0;
-/// The quantile over the blocks that counts as usual. It is high because the finger may rest for
-/// three quarters of a recording.
+/// The usual second difference is this quantile over the blocks. It is high because the finger may
+/// rest for three quarters of a recording.
 const USUAL: f64 = 0.75;
-/// Largest fraction of blocks with spikes; if there are more, they belong to the texture (stick and
-/// slip).
+/// Largest fraction of blocks with spikes. If more blocks have spikes, the spikes belong to the
+/// texture (stick and slip).
 const RARE: f64 = 0.1;
 /// This many spikes or fewer are always reported.
 const FEW: usize = 3;
@@ -44,10 +44,10 @@ const REPAIRED: f64 = 2.0;
 /// Ratio of the standard deviation of normally distributed numbers to the median of their
 /// magnitudes.
 const NORMAL: f64 = 1.4826;
-/// Small single-sample outliers: how many standard deviations their corners have, and from which
-/// fraction of all samples there are too many of them. An outlier of six standard deviations of
-/// white noise makes a corner of five. If 0.75 % of the samples are such outliers, they raise the
-/// noise's level by 1 dB.
+/// Two limits for small single-sample outliers. A corner counts from this number of standard
+/// deviations on. There are too many outliers if at least this fraction of all samples are
+/// outliers. An outlier of six standard deviations of white noise makes a corner of five standard
+/// deviations. If 0.75 % of the samples are such outliers, they raise the noise's level by 1 dB.
 const SMALL: (f64, f64) = (5.0, 0.0075);
 /// Large single-sample outliers: the same two limits as in [`SMALL`], but with a number of samples
 /// instead of a fraction.
@@ -107,7 +107,8 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
 /// difference exceeds ten times both the usual one and a floor. If there are more single-sample
 /// outliers than such spikes, the function returns the outliers instead.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
-    // At low rates a block would have too few samples for its largest corner to mean anything.
+    // At low rates, a block would have too few samples, and its largest corner would not be
+    // meaningful.
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
     let blocks = Blocks::new(values, block);
     let usual = quantile(USUAL, blocks.largest.len(), |at| blocks.largest[at].corner);
@@ -118,8 +119,8 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
         (at.unwrap_or(largest.samples.start), largest.corner)
     };
     let mut found: Vec<_> = blocks.largest.iter().filter(is_spike).map(sample).collect();
-    // At the edge of a block, the next block's largest sample may be the neighbour of the same
-    // spike.
+    // If a spike is at the edge of a block, the sample with the largest corner in the next block
+    // may be a neighbour of the same spike.
     found.dedup_by(|next, one| {
         let is_one = next.0 - one.0 <= NEIGHBOURS;
         if is_one && next.1 > one.1 {
@@ -197,16 +198,17 @@ fn many(values: &[f64], blocks: &Blocks, floor: f64) -> Vec<usize> {
     single
 }
 
-/// Whether repairing the sample removes its corner. The sample must have three others on either
-/// side.
+/// Whether repairing the sample removes its corner. The sample must have at least three samples on
+/// either side.
 fn is_single(values: &[f64], at: usize) -> bool {
     let own = corner_at(values, at);
-    // Of equal neighbouring corners, only the last one counts.
+    // If neighbouring corners are equal, only the last one counts.
     if own < corner_at(values, at - 1) || own <= corner_at(values, at + 1) {
         return false;
     }
     let mut around: [f64; 7] = core::array::from_fn(|i| values[at + i - 3]);
-    // Repairs the sample by the cubic through two neighbours on either side.
+    // Replaces the sample by the value of the cubic polynomial through the two nearest samples on
+    // either side.
     around[3] = (4.0 * (around[2] + around[4]) - (around[1] + around[5])) / 6.0;
     around.windows(3).all(|w| REPAIRED * corner(w) < own)
 }

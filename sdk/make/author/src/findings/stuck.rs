@@ -9,8 +9,8 @@ use super::{axis_words, lanes, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 
-/// Shortest constant stretch that counts as a stuck sensor, seconds: longer than a turn of the hand
-/// (0.1 to 0.3 s), and two and a half segments.
+/// Shortest constant stretch that counts as a stuck sensor, seconds. It is longer than a turn of
+/// the hand (0.1 to 0.3 s), and has the length of two and a half segments.
 const STUCK_S: f64 = 0.5;
 /// Shortest constant stretch near zero that is reported, seconds. Pauses between sweeps are
 /// shorter.
@@ -20,8 +20,9 @@ const SILENT_S: f64 = 1.0;
 const FRICTION: f64 = 0.5;
 /// The finger is at rest below this fraction of the mean speed.
 const RESTS: f64 = 0.1;
-/// If the normal force changes at more than this fraction of the samples, its sensor resolves noise
-/// and should never be constant. Coarsely quantised forces and set points may stay constant.
+/// If the normal force changes at more than this fraction of the samples, the sensor resolves
+/// noise, so the force should never be constant. Coarsely quantised forces and set points may stay
+/// constant.
 const LIVELY: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -120,7 +121,8 @@ pub(super) fn mean_size(values: &[f64]) -> f64 {
 /// Returns the constant stretches that have at least `shortest` samples.
 fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
-    // Every such stretch has a sample at one of these places, from which it is followed both ways.
+    // Every such stretch contains at least one of these places. From this place, the stretch is
+    // followed in both directions.
     let step = (shortest / 2).max(1);
     let (mut at, mut end) = (0, 0);
     while at < values.len() {

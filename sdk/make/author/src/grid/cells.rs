@@ -5,11 +5,12 @@ use htex_dsp::order;
 
 use super::lines::{FEWEST, Lines};
 
-/// A cell with this many windows is not widened. In third octaves, the power of this many windows
-/// of noise scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
+/// A cell with this many windows is not widened. If this many windows of noise are averaged, their
+/// power in third octaves scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
 const ENOUGH: usize = 32;
-/// Limits for widening a cell. First: a cell may always reach speeds within this ratio of its
-/// crossing. Second: otherwise its widths in speed and force may grow by at most these factors.
+/// Limits for widening a cell. First: a cell may always be widened to speeds within this ratio of
+/// its crossing. Second: beyond this ratio, its widths in speed and force may grow by at most these
+/// factors.
 const WIDENED_RATIO: f64 = 1.19;
 const WIDENED: [f64; 2] = [2.0, 1.5];
 /// Windows within this distance of a crossing show how the texture changes around it. The unit is
@@ -28,7 +29,8 @@ pub(super) struct Cell {
     pub(super) borrowed: Vec<usize>,
     /// Indices of the windows in a wider neighbourhood, including the cell's own.
     pub(super) around: Vec<usize>,
-    /// Whether there are windows inside, or borrowed ones at both lower and higher speeds.
+    /// Whether there are windows inside the cell, or borrowed windows at both lower and higher
+    /// speeds.
     surrounded: bool,
 }
 
@@ -45,8 +47,8 @@ impl Cell {
     }
 }
 
-/// Makes the cells of all crossings, ordered by speed and then by force, from the windows whose
-/// indices are in `among`.
+/// Makes the cells of all crossings from the windows whose indices are in `among`. The cells are
+/// ordered by speed and then by force.
 pub(super) fn gather(lines: &Lines, motions: &[[f64; 2]], among: &[usize]) -> Vec<Cell> {
     let [speeds, forces] = &lines.axes;
     let mut cells = Vec::with_capacity(speeds.len() * forces.len());
@@ -74,12 +76,13 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
     let own: Vec<usize> = all().filter(|i| inside[*i] < 1.0).collect();
     let mut borrowed: Vec<usize> =
         all().filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0).collect();
-    // The order is stable, so that equal distances give the same windows on every machine.
+    // The sort is stable, so that the same windows are chosen on every machine even if distances
+    // are equal.
     order::sort_by(&mut borrowed, |a, b| around[*a].total_cmp(&around[*b]));
     borrowed.truncate(ENOUGH.saturating_sub(own.len()));
     order::sort(&mut borrowed);
     let slower = |i: &usize| motions[*i][0] < at[0];
-    // Windows from one side alone would make this condition a copy of its neighbour.
+    // If all windows came from one side, this condition would be a copy of its neighbour.
     let both_sides = borrowed.iter().any(slower) && !borrowed.iter().all(slower);
     Cell {
         surrounded: !own.is_empty() || both_sides,
@@ -105,7 +108,7 @@ fn distance(at: [f64; 2], halves: [[f64; 2]; 2], motion: [f64; 2]) -> f64 {
     let along = |axis: usize| {
         let difference = motion[axis] - at[axis];
         let [below, above] = halves[axis];
-        // The lower edge belongs to this cell, the upper edge to the next one.
+        // The lower edge belongs to this cell, and the upper edge belongs to the next cell.
         if difference < 0.0 { -difference / below * (1.0 - 1e-12) } else { difference / above }
     };
     along(0).max(along(1))

@@ -4,8 +4,8 @@
 //! Neighbouring cells share windows, and windows overlap. If a condition were predicted from
 //! neighbouring cells, the prediction would use some of the samples with which it is then compared.
 //! The quarters are blocks of time, which share no samples. The blocks are long because a finger
-//! and its motion drift. Samples recorded within a second of a short block would predict this block
-//! too well. The error would then be smaller than the error of a later playback.
+//! and its motion drift. A short block would be predicted too well by samples that were recorded
+//! within a second of it. The error would then be smaller than the error of a later playback.
 
 use std::ops::Range;
 
@@ -25,8 +25,8 @@ pub(super) struct Fold {
 }
 
 /// Leaves out each quarter of all recordings in turn. A window may be lengthened
-/// ([`super::paths`]); if its longest form crosses the edge of a block, the window belongs to
-/// neither side.
+/// ([`super::paths`]). If its longest form crosses the edge of a block, the window is neither
+/// inside nor outside this block.
 pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
     std::array::from_fn(|block| {
         let of = |window: &Window| {

@@ -13,10 +13,10 @@ use super::played::{PlayedSpectra, levels_db};
 use crate::conditions::ConditionSpectrum;
 use crate::{AuthorError, Averaging, TextureSpectrum};
 
-/// Fewest windows of a block that are compared with a prediction.
+/// The windows of a block are compared with a prediction only if there are at least this many.
 const FEWEST: usize = 4;
 
-/// What all spectra of a grid have in common.
+/// The properties that all spectra of a grid have in common.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     pub(super) quantity: Quantity,
@@ -71,8 +71,8 @@ pub(super) fn held_out_windows(
     Ok(all)
 }
 
-/// Averages windows. Given the logarithm of a speed, each window is read over the path that a
-/// finger at this speed covers in 0.2 s; otherwise over its own 0.2 s.
+/// Averages windows. If the logarithm of a speed is given, each window is read over the path that a
+/// finger at this speed covers in 0.2 s. Otherwise, it is read over its own 0.2 s.
 pub(super) fn averaged(
     paths: &mut Paths<'_>,
     windows: &[Window],

@@ -1,6 +1,6 @@
 //! Held-out error of a model. For each block of time, the model is fitted to the other blocks of
-//! the recording. The spectrum that a player would play from this fit is compared with the spectrum
-//! of the left-out block.
+//! the recording. Then the spectrum that a player would play from this fit is compared with the
+//! spectrum of the left-out block.
 
 use htex_dsp::bands::rms;
 use htex_format::{LeftOut, Measure, Measures};
@@ -15,9 +15,10 @@ use crate::fit::ConditionFit;
 use crate::{AuthorError, agreement, read_spectrum};
 
 /// Returns the held-out error at each of `conditions` conditions. For each block of time, the model
-/// is fitted to the other blocks, and what a player would then play near the condition is compared
-/// with the block. The error is the RMS over the blocks. `None` if no block has enough windows near
-/// the condition, or if the other blocks do not reach it. `fit` fits the model at one condition.
+/// is fitted to the other blocks. The spectrum that a player would then play near the condition is
+/// compared with the block. The error is the RMS over the blocks. It is `None` if no block has
+/// enough windows near the condition, or if the other blocks give no spectrum there. `fit` fits the
+/// model at one condition.
 pub(crate) fn left_out(
     model: &LoadedModel,
     conditions: usize,
@@ -52,8 +53,8 @@ pub(crate) fn left_out_rms(blocks: &[Measures]) -> Option<LeftOut> {
     over(Measure::NineBand).map(|_| LeftOut(measures))
 }
 
-/// The conditions of a grid that was fitted without a block of time, interpolated as a player does
-/// it.
+/// A grid that was fitted without a block of time. It interpolates between its conditions as a
+/// player does.
 struct HeldOutGrid<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
@@ -68,8 +69,8 @@ impl<'a> HeldOutGrid<'a> {
         Some(Self { model, mesh, conditions, fits })
     }
 
-    /// Compares the spectrum that is played at the motion of left-out windows with the spectrum of
-    /// the windows themselves.
+    /// Compares two spectra: the spectrum that is played at the motion of left-out windows, and the
+    /// spectrum of the windows themselves.
     fn error(&self, held: &HeldOutWindows) -> Option<Measures> {
         let reference = held.spectrum.as_ref();
         let magnitude = self.magnitude(held.motion, reference).ok()?;
@@ -78,8 +79,8 @@ impl<'a> HeldOutGrid<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes that would be measured in a recording of the texture, when it is
-    /// played at the given motion. Where frequencies are scaled, it returns the same magnitudes as
+    /// Returns the magnitudes that a recording of the texture, played at the given motion, would
+    /// have. If frequencies are scaled, these are the same magnitudes as those of
     /// [`htex_play::Representation::magnitude`].
     fn magnitude(
         &self,
@@ -101,7 +102,7 @@ impl<'a> HeldOutGrid<'a> {
         }
         let recorded_hz: Vec<f64> = reference.frequency_hz.iter().map(|f| f / ratio).collect();
         let shape = self.model.magnitude(&mixed, reference.band, &recorded_hz)?;
-        // Noise that is stretched spreads its power over more bins; a line stays a line.
+        // If noise is stretched, its power is spread over more bins. A spectral line stays a line.
         let spread = if self.model.has_lines() { 1.0 } else { ratio.sqrt() };
         let gain = level * scaling.level / spread;
         Ok(shape.iter().map(|m| m * gain).collect())

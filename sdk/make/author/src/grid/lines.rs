@@ -5,7 +5,7 @@ use super::request::Grid;
 use crate::AuthorError;
 use crate::findings::quantile;
 
-/// Fewest windows of a condition, including those borrowed by widening its cell.
+/// Fewest windows of a condition, including windows that its cell borrows from neighbouring cells.
 pub(super) const FEWEST: usize = 8;
 /// A chosen grid covers the windows' speeds and forces between these two quantiles.
 const COVERED: [f64; 2] = [0.01, 0.99];
@@ -25,10 +25,10 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Returns the given lines, and chooses lines for axes without any. Chosen lines are equally
-    /// spaced in the logarithm, over the range that contains 98 % of the windows. Their number is
-    /// the smallest with a ratio of at most `speed_ratio` between neighbouring speeds and 4 between
-    /// neighbouring forces.
+    /// Returns the given lines. If an axis has no given lines, chooses lines for it. Chosen lines
+    /// are equally spaced in the logarithm, over the range that contains 98 % of the windows. The
+    /// function chooses the smallest number of lines for which the ratio of neighbouring speeds is
+    /// at most `speed_ratio`, and the ratio of neighbouring forces is at most 4.
     pub(super) fn choose(
         grid: &Grid,
         motions: &[[f64; 2]],
@@ -86,7 +86,8 @@ impl LogRange {
         self.high - self.low < libm::log(CONSTANT)
     }
 
-    /// Returns as few lines as possible with ratios of at most `ratio` between neighbours.
+    /// Returns the smallest number of lines with which the ratio between neighbours is at most
+    /// `ratio`.
     fn at_most(&self, ratio: f64) -> Vec<f64> {
         if self.is_constant() {
             return self.lines(1);

@@ -59,9 +59,9 @@ pub(crate) struct GridSpectra {
 }
 
 impl GridSpectra {
-    /// Computes the spectra of the recordings' steady windows and averages them cell by cell. Each
-    /// window is read over a path whose length depends on the grid, so the windows are read from
-    /// the recordings again and not taken from spectra of segments.
+    /// Computes the spectra of the recordings' steady windows and averages them cell by cell. The
+    /// windows are read from the recordings again, and are not taken from spectra of segments,
+    /// because each window is read over a path whose length depends on the grid.
     pub(crate) fn new(
         takes: &[Take],
         grid: &Grid,
@@ -126,8 +126,8 @@ impl GridSpectra {
     }
 }
 
-/// Adds a finding if a single condition predicts the left-out blocks better than the grid does, and
-/// the 95 % interval of this difference does not include 0.
+/// Adds a finding if a single condition predicts the left-out blocks better than the grid does. The
+/// 95 % interval of the difference must not include 0.
 fn judge(
     report: &GridReport,
     worse_db: Option<[f64; 2]>,

@@ -19,11 +19,11 @@ use crate::blocks::Span;
 use crate::spectrum::{SegmentReader, Trend, inverse_at};
 use crate::{AuthorError, SetupResponse, Take};
 
-/// Largest ratio between a window's speed and the line's speed for which the length of the window
-/// is adapted.
+/// The length of a window is adapted only up to this ratio between the window's speed and the
+/// line's speed.
 pub(super) const MOST: f64 = 1.5;
-/// Window lengths are multiples of 0.2 s divided by this. It keeps the number of lengths small,
-/// because each length needs its own tables.
+/// Window lengths are multiples of a step, which is 0.2 s divided by this number. This limits the
+/// number of different lengths, because each length needs its own tables.
 const STEPS: f64 = 100.0;
 
 /// A steady window.
@@ -68,8 +68,8 @@ impl<'a> Paths<'a> {
             self.readers.entry(len).or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
         let mut bins = reader.read(&recording.axes, start)?;
         if let Some(response) = self.response {
-            // The bins carry the numbers of the line's frequencies, but the setup passed the
-            // frequencies at which the finger really moved.
+            // The bins are numbered by the frequencies at the line's speed. But the response of the
+            // setup applies to the frequencies at the finger's actual speed.
             let faster = window.len as f64 / len as f64;
             let inverse = self.inverses.entry([window.len, len]).or_insert_with(|| {
                 let frequency_hz = band.grid_hz().into_iter().map(|f| f * faster);
@@ -80,8 +80,8 @@ impl<'a> Paths<'a> {
         Ok(bins)
     }
 
-    /// Returns the samples of the path that a finger covers in 0.2 s at the speed with the given
-    /// logarithm, around the middle of a window.
+    /// Returns the range of samples, around the middle of a window, in which the finger covers the
+    /// same path as in 0.2 s at the speed with the given logarithm.
     pub(super) fn samples(&self, window: &Window, log_speed: f64) -> Range<usize> {
         let len = self.length(window, log_speed);
         let middle = window.start + window.len / 2;
@@ -90,24 +90,24 @@ impl<'a> Paths<'a> {
         start..start + len
     }
 
-    /// Returns where the samples read for a window lie, in segments of 0.2 s.
+    /// Returns the range of the samples that are read for a window, in segments of 0.2 s.
     pub(super) fn span(&self, window: &Window, log_speed: f64) -> Span {
         let samples = self.samples(window, log_speed);
         let place = |sample: usize| sample as f64 / window.len as f64;
         Span { take: window.take, from: place(samples.start), to: place(samples.end) }
     }
 
-    /// Returns the number of samples in the path of 0.2 s at a speed. If the spectrum of this path
-    /// would not reach the end of the band, or the recording is too short for it, returns the
-    /// number of samples in 0.2 s.
+    /// Returns the number of samples in which the finger covers the path of 0.2 s at the given
+    /// speed. If the spectrum of this path would not reach the end of the band, or the recording is
+    /// too short for it, returns the number of samples in 0.2 s.
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);
         let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));
-        // An even step keeps all lengths even, if the window's own length is.
+        // The step is even. Therefore, all lengths are even if the window's own length is even.
         let step = libm::round(window.len as f64 / (2.0 * STEPS)).max(1.0) * 2.0;
         let len = (libm::round(window.len as f64 * ratio / step) * step) as usize;
         let samples = self.takes[window.take].recording.samples();
-        // Half the samples is the number of the last bin of a Fourier transform of this length.
+        // The last bin of a Fourier transform of this length has the number `len / 2`.
         if len / 2 >= self.band.last_bin() && len <= samples { len } else { window.len }
     }
 }

@@ -1,5 +1,5 @@
-//! Spectra at motions other than the recorded ones: what a player would play if a model reproduced
-//! the recorded spectra without an error.
+//! Spectra at motions other than the recorded ones. A player would play these spectra if a model
+//! reproduced the recorded spectra without an error.
 
 use htex_format::{AtCondition, Condition, Contact, Law};
 use htex_play::exploration::CEILING;
@@ -48,7 +48,7 @@ impl PlayedSpectra {
     }
 }
 
-/// Returns the third-octave energies of a noise whose frequencies are multiplied by `ratio`, in
+/// Multiplies the frequencies of a noise by `ratio`, and returns its energies in third octaves, in
 /// decibels relative to a level.
 pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) -> Vec<f64> {
     let first = spectrum.band.first_bin() as f64;

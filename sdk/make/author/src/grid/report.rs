@@ -37,8 +37,9 @@ pub struct GridCell {
     /// Number of windows that were averaged, including windows from neighbouring cells; 0 for a
     /// cell with too few windows.
     pub averaged: usize,
-    /// Repeatability of the cell's spectrum, decibels: the RMS difference between the odd and the
-    /// even blocks of the windows, over nine bands, divided by √2.
+    /// Repeatability of the cell's spectrum, decibels. It is computed from the spectra of the odd
+    /// and of the even blocks of the windows: the RMS of their difference over nine bands, divided
+    /// by √2.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
     /// Index of the cell's condition in the asset; `None` for a cell with too few windows.
@@ -63,8 +64,8 @@ pub struct GridReport {
     /// too few windows.
     pub left_out_rms_db: Option<f64>,
     /// The held-out error of an asset with a single condition, decibels. This condition is the mean
-    /// of all steady windows. The law scales this mean to each motion. A useful grid has a smaller
-    /// held-out error than this single condition.
+    /// of all steady windows. The law scales this mean to each motion. If a grid is useful, its
+    /// held-out error is smaller than this error.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, ordered by speed and then by force.
     pub cells: Vec<GridCell>,

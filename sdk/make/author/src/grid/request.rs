@@ -30,8 +30,8 @@ impl Grid {
     ///
     /// # Errors
     /// Returns an error if a text has none of these forms, or if an axis is given twice. Also
-    /// returns an error if a speed or a force is not above 0, is not finite, is too large, or
-    /// differs by less than 5 % from another value of the same axis.
+    /// returns an error if a speed or a force is not above 0, is not finite, or is too large, or if
+    /// two values of an axis differ by less than 5 %.
     pub fn parse<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Self, AuthorError> {
         let mut grid = Self::default();
         for text in texts {

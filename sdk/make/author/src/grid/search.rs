@@ -20,15 +20,17 @@ use crate::findings::quantile;
 use crate::law::law;
 use crate::{AuthorError, SetupResponse, Take, TextureSpectrum};
 
-/// Ratios of neighbouring speeds that are tried: from an octave down to a twelfth of it. A player
-/// treats speeds within 5 % as one.
+/// Ratios of neighbouring speeds that are tried, from an octave down to a twelfth of an octave. A
+/// player treats speeds that differ by at most 5 % as equal.
 const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
-/// Left-out windows are gathered around lines with this ratio, so that all grids are compared with
-/// the same windows. Denser lines are tried only if there are enough windows for them.
+/// Left-out windows are gathered around lines whose neighbouring speeds have this ratio, so that
+/// all grids are compared with the same windows. Denser lines are tried only if there are enough
+/// windows for them.
 const COMPARED_RATIO: f64 = 1.19;
 /// A denser grid is chosen only if its error is smaller by this many decibels.
 const WORTH_DB: f64 = 0.02;
-/// Fewest groups of left-out windows in which a grid is compared with one condition.
+/// A grid is compared with a single condition only if there are at least this many groups of
+/// left-out windows.
 const FEWEST_GROUPS: usize = 4;
 
 /// The cells and their spectra for one choice of lines.
@@ -43,13 +45,13 @@ pub(super) struct CellSpectra {
 /// The chosen lines and their error.
 pub(super) struct SearchResult {
     pub(super) gathered: CellSpectra,
-    /// RMS difference in third octaves between left-out blocks and what is played for them,
-    /// decibels.
+    /// RMS difference in third octaves between left-out blocks and the spectra that are played for
+    /// them, decibels.
     pub(super) left_out_rms_db: Option<f64>,
-    /// The same error when one condition serves all motions.
+    /// The same error if a single condition is played at all motions.
     pub(super) one_condition_rms_db: Option<f64>,
-    /// By how much the grid's error exceeds the error of one condition, and half the width of the
-    /// 95 % interval, decibels.
+    /// Two numbers, in decibels: how much the grid's error exceeds the error of a single condition,
+    /// and half the width of the 95 % interval of this difference.
     pub(super) worse_db: Option<[f64; 2]>,
     pub(super) left_out: Vec<LeftOutBlock>,
 }
@@ -80,14 +82,14 @@ impl<'a> Search<'a> {
     }
 
     /// Gathers windows around the given lines. If no speeds are given, it chooses the speed lines
-    /// that best predict left-out blocks. If no block can be left out either, the speed lines are a
-    /// quarter of an octave apart.
+    /// that best predict left-out blocks. If there are also no left-out windows, the speed lines
+    /// are a quarter of an octave apart.
     pub(super) fn best(mut self, grid: &Grid) -> Result<SearchResult, AuthorError> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
         let cells = gather(&lines, &self.motions, &all);
-        // The same windows for all candidates: with cells of their own, denser grids would be
-        // compared with fewer and better placed windows.
+        // All candidates are compared with the same windows. If each candidate used its own cells,
+        // denser grids would be compared with fewer and better placed windows.
         let compared = self.all_held_out(&cells)?;
         let one_condition = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
@@ -106,8 +108,8 @@ impl<'a> Search<'a> {
             if least.is_none_or(|least| error_db < least) {
                 best = Some((gathered, errors, error_db));
             } else if *ratio < COMPARED_RATIO {
-                // Coarse grids are all tried, but a denser one only as long as this improves the
-                // error.
+                // All coarse grids are tried, but the search for denser grids ends when a grid does
+                // not reduce the error.
                 break;
             }
         }
@@ -129,7 +131,8 @@ impl<'a> Search<'a> {
         folds.map(|fold| held_out_windows(paths, windows, fold, cells, kind)).collect()
     }
 
-    /// Averages the windows of all cells, once over the whole time and once without each block.
+    /// Averages the windows of all cells: once over the whole time, and then for each block without
+    /// this block.
     fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<CellSpectra, AuthorError> {
         let folds = self.folds.iter();
         let cells_without: Vec<Vec<Cell>> =
@@ -137,7 +140,8 @@ impl<'a> Search<'a> {
         let mut spectra = Vec::with_capacity(cells.len());
         let mut without: Vec<Vec<_>> = cells_without.iter().map(|_| Vec::new()).collect();
         for (i, cell) in cells.iter().enumerate() {
-            // Read once for all folds, because reading takes nearly all of the time.
+            // The windows are read only once, for all folds, because reading takes nearly all of
+            // the time.
             let reads = read_around(&mut self.paths, self.windows, cell)?;
             spectra.push(self.spectrum(&reads, cell));
             for (cells, spectra) in cells_without.iter().zip(&mut without) {
@@ -160,8 +164,8 @@ impl<'a> Search<'a> {
         Some(TextureSpectrum::from_segments(quantity, band, &spectra, &spans, averaging))
     }
 
-    /// Returns the error of a grid: for each block of time, a grid is made without the block, and
-    /// the spectrum that is played from it is compared with the block.
+    /// Returns the error of a grid. For each block of time, a grid is made without the block, and
+    /// the spectrum that is played from this grid is compared with the block.
     fn errors_db(
         &self,
         gathered: &CellSpectra,
@@ -207,10 +211,11 @@ impl<'a> Search<'a> {
         Ok(errors)
     }
 
-    /// Returns the chosen grid fitted without each block of time, together with the blocks.
+    /// For each block of time, returns the chosen grid fitted without this block, together with the
+    /// block.
     fn left_out(&mut self, gathered: &CellSpectra) -> Result<Vec<LeftOutBlock>, AuthorError> {
-        // Gathered again, because the blocks for models belong to the conditions of the chosen
-        // lines.
+        // The blocks are gathered again, because the blocks for models belong to the conditions of
+        // the chosen lines.
         let all_held_out = self.all_held_out(&gathered.cells)?;
         let blocks = gathered.without.iter().zip(all_held_out);
         let block = |(spectra, held_out): (&Vec<Option<TextureSpectrum>>, _)| {
@@ -222,8 +227,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns the mean by which the errors of a grid exceed the errors of one condition, over groups of
-/// left-out windows, and half the width of its 95 % interval; `None` with fewer than four groups.
+/// For each group of left-out windows, computes how much the error of a grid exceeds the error of a
+/// single condition. Returns the mean of these differences, and half the width of its 95 %
+/// interval. Returns `None` if there are fewer than four groups.
 fn worse_db(grid: &[Vec<f64>], one: &[Vec<f64>]) -> Option<[f64; 2]> {
     let both = grid.iter().zip(one).filter(|(a, b)| !a.is_empty() && a.len() == b.len());
     let worse: Vec<f64> = both.map(|(a, b)| rms(a) - rms(b)).collect();
@@ -235,7 +241,7 @@ fn worse_db(grid: &[Vec<f64>], one: &[Vec<f64>]) -> Option<[f64; 2]> {
 }
 
 impl CellSpectra {
-    /// Returns the cells that have one of these spectra, as conditions.
+    /// Returns the cells as conditions, but only those for which one of these spectra exists.
     fn conditions(&self, spectra: &[Option<TextureSpectrum>]) -> Vec<ConditionSpectrum> {
         let both = self.cells.iter().zip(spectra);
         let with = both.filter_map(|(cell, spectrum)| {
@@ -244,8 +250,8 @@ impl CellSpectra {
         with.collect()
     }
 
-    /// Keeps the left-out windows whose cells are conditions, and replaces their cell index by the
-    /// index of the condition.
+    /// Keeps only the left-out windows whose cell is a condition, and replaces the index of the
+    /// cell by the index of the condition.
     fn of_conditions(&self, held_out: Vec<HeldOutWindows>) -> Vec<HeldOutWindows> {
         let is_fitted = |cell: usize| self.spectra.get(cell).is_some_and(Option::is_some);
         let before = |cell: usize| self.spectra.iter().take(cell).flatten().count();

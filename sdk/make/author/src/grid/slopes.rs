@@ -1,12 +1,12 @@
-//! Corrects the spectra of windows for the difference between each window's motion and the crossing
-//! of its cell (the speed and force for which the cell stands).
+//! Corrects the spectra of windows for the difference between the motion in a window and the
+//! crossing of its cell. The crossing is the speed and force for which the cell stands.
 //!
 //! In all windows of a cell, the finger covers a path of the same length ([`super::paths`]). In
-//! each third-octave band, a linear fit over the windows around the crossing relates the logarithm
-//! of the energy to the logarithms of speed and force. The fit predicts by how much the energy
-//! changes if speed and force change from the window's values to the crossing's values. The
-//! window's spectrum is scaled by this change. Without this correction, windows with a firm touch
-//! would dominate the mean of the cell.
+//! each third-octave band, a linear fit over the windows around the crossing describes how the
+//! logarithm of the energy depends on the logarithms of speed and force. The fit predicts how the
+//! energy changes if speed and force change from the values of the window to those of the crossing.
+//! The window's spectrum is scaled by this change. Without this correction, windows with a firm
+//! touch would dominate the mean of the cell.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;
@@ -17,7 +17,8 @@ use crate::AuthorError;
 
 /// Fewest windows for a regression.
 const FEWEST: usize = 12;
-/// Smallest standard deviation of an axis at which a slope is determined, in the logarithm.
+/// A slope over an axis is determined only if the standard deviation of the axis, in the logarithm,
+/// is at least this number.
 const LEAST_SPREAD: f64 = 0.02;
 /// Largest exponent that is used for the energy. No texture changes with a higher power of speed or
 /// force.
@@ -65,7 +66,7 @@ pub(super) fn corrected(
         let mut spectrum = window.spectrum.clone();
         for (bins, slope) in octaves.iter().zip(&slopes) {
             let change = [0, 1].map(|axis| slope[axis] * (window.motion[axis] - cell.at[axis]));
-            // Half of the change, because the slopes belong to energies and the bins are
+            // Half of the change is used, because the slopes apply to energies, but the bins are
             // amplitudes.
             let gain = libm::exp(-0.5 * (change[0] + change[1]));
             let bins = spectrum.get_mut(bins.clone());

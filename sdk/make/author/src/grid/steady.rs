@@ -28,8 +28,9 @@ pub(super) struct SteadyWindows {
     pub(super) findings: Vec<Finding>,
 }
 
-/// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their
-/// means, and checks the recording as a plain fit does.
+/// Cuts a recording into half-overlapping windows of 0.2 s, and finds the windows in which speed
+/// and force stay within 10 % of their means. Also checks the recording, as a fit without a grid
+/// does.
 pub(super) fn read_steady(
     index: usize,
     take: &Take,
@@ -86,6 +87,6 @@ fn steady_motion(axes: &[MotionAxis<'_>; 2], start: usize, len: usize) -> Option
         MotionAxis::Measured(signal) => signal.steady_mean(start, len, STEADY),
     });
     let (speed, force) = (speed?, force?);
-    // The logarithms need both above 0.
+    // Speed and force must be above 0, because their logarithms are computed.
     (speed >= SLOWEST_MM_S && force > 0.0).then(|| [libm::log(speed), libm::log(force)])
 }

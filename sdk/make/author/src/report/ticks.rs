@@ -22,7 +22,8 @@ pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (low, high) = sound_range(Some((low, high)), scale);
     let count = count.clamp(2, 50) as f64;
     match scale {
-        // A range of less than a factor of three contains too few of the ticks at 1, 2 and 5.
+        // If the range covers less than a factor of three, it contains too few of the ticks at 1, 2
+        // and 5.
         Scale::Log if high / low >= 3.0 => log(low, high, count),
         _ => linear(low, high, count),
     }
@@ -31,7 +32,7 @@ pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
 fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
     let (mantissa, exponent) = nice_step((high - low) / count);
     let step = mantissa * 10f64.powi(exponent);
-    // The tolerances keep ticks that lie on an end of the axis in spite of rounding.
+    // Because of the tolerances, a tick at an end of the axis is kept in spite of rounding errors.
     let first = (low / step - 1e-6).ceil();
     let steps = (high / step + 1e-6).floor() - first;
     (0..=steps.clamp(0.0, 200.0) as u32)

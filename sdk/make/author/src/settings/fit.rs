@@ -195,7 +195,7 @@ impl FitSettings {
         let models = self.named_models(registry)?;
         let mut options: Vec<(&str, &str, String)> = self.preset_options(&models).collect();
         for (name, value) in &self.options {
-            // A model's id has dots of its own, so the option is what follows the last dot.
+            // A model's id contains dots, so the option is the part after the last dot.
             let (owner, option) = name.rsplit_once('.').ok_or_else(|| {
                 let text = format!("{name}={value}");
                 AuthorError::OptionForm { text }
@@ -231,8 +231,8 @@ impl FitSettings {
         }
     }
 
-    /// Returns the options of the preset for these models that the user has not given: model, name
-    /// and value.
+    /// Returns the preset's options for these models, except the options that the user has given:
+    /// model, name and value.
     fn preset_options(
         &self,
         models: &[LoadedModel],
@@ -297,7 +297,8 @@ impl FitSettings {
         recorded.extend(FitSettings { level: Some(level), ..self.clone() }.recorded());
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
-        // Only the models that come with this program: a plugin runs only where it is asked for.
+        // Uses only the models that come with this program, because a plugin runs only if it is
+        // requested.
         let builtin = registry.by_default().filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest {
             name: name.to_owned(),

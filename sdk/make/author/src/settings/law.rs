@@ -84,7 +84,7 @@ impl GivenLaw {
 }
 
 fn is_exponent(x: f64) -> bool {
-    // Written so that NaN, which compares with nothing, is refused.
+    // Written in this form to refuse NaN, for which every comparison is false.
     x.abs() <= MOST_EXPONENT
 }
 

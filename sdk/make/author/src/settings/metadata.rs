@@ -154,8 +154,8 @@ impl Metadata {
     }
 
     /// Writes contact and law into a manifest. If the contact changes, assumed exponents are
-    /// assumed again for the new contact, and measured exponents are combined with the new
-    /// assumptions.
+    /// replaced by the assumptions for the new contact, and measured exponents are combined with
+    /// these assumptions.
     fn apply_law(&self, manifest: &mut Manifest) {
         let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
         let of_contact = |law: Law| law.reassumed(manifest.quantity, contact);

@@ -39,7 +39,7 @@ impl<T: Recorded> Setting for Option<T> {
     }
 }
 
-/// Options of models override each other one by one.
+/// Each option of a model is overridden separately.
 impl Setting for BTreeMap<String, OptionSetting> {
     fn over(self, mut under: Self) -> Self {
         under.extend(self);
@@ -106,11 +106,11 @@ fn unless_default<T: Default + PartialEq>(value: &T, text: &str) -> Option<Strin
     (*value != T::default()).then(|| text.to_owned())
 }
 
-/// Defines a struct of settings once for all its uses: read from recipes and keywords (serde), from
-/// the command's flags (clap), and stored in the provenance.
+/// Defines a struct of settings once for all its uses: recipes and keywords (serde), the command's
+/// flags (clap), and the provenance.
 ///
-/// `= "NAME"` after a setting names its flag, under which the provenance stores it. A setting whose
-/// flag has another form declares the flag in its attributes.
+/// `= "NAME"` after a setting is the name of its flag. The provenance stores the setting under this
+/// name. A setting whose flag has another form declares the flag in its attributes.
 macro_rules! settings {
     (
         $(#[$meta:meta])*

@@ -20,8 +20,8 @@ const TURN_MM_S: f64 = 5.0;
 const STRIBECK: (f64, f64) = (0.15, 15.0);
 /// Low-pass of the skin: frequency in Hz and quality factor, second order.
 pub(super) const SKIN: (f64, f64) = (900.0, 0.6);
-/// Across the sweep, the fraction of the texture that acts, and the distance ahead of the finger at
-/// which it is read, mm.
+/// For the direction across the sweep: the fraction of the texture that acts, and the distance
+/// ahead of the finger at which the texture is read, mm.
 pub(super) const ACROSS: (f64, f64) = (0.25, 7.3);
 /// Lateral mode of the rig: frequency in Hz, damping ratio, and the fraction of the force that
 /// passes through it. The gain is about 5 dB at the peak and 1 far below it.
@@ -41,7 +41,7 @@ pub(super) struct Force {
     pub(super) z: f64,
 }
 
-/// Contact of skin and relief: the friction of the finger, before it passes the rig.
+/// Contact of skin and relief: the friction of the finger, before the rig filters the force.
 pub(super) struct Contact {
     friction: f64,
     material: Material,
@@ -62,8 +62,8 @@ pub(super) enum Material {
 }
 
 impl Material {
-    /// Returns the texture across and along the sweep, after the reading point has moved on by
-    /// `distance` mm. `as_it_lies` is true if the texture is read at the finger's own position.
+    /// Moves the reading point on by `distance` mm, and returns the texture there, across and along
+    /// the sweep. `as_it_lies` is true if the texture is read at the finger's own position.
     fn read(&mut self, finger: &Finger, distance: f64, as_it_lies: bool) -> [f64; 2] {
         match self {
             Self::Piece(relief, path) => {
@@ -79,8 +79,8 @@ impl Material {
     }
 }
 
-/// Converts the length of a path that goes back and forth on a piece of material to a position in
-/// mm; 0 is the middle.
+/// Converts the length of a path to a position in mm. The path goes back and forth on a piece of
+/// material; 0 is the middle.
 fn to_and_fro(path_mm: f64) -> f64 {
     let length = 2.0 * HALF_READ_MM;
     let along = path_mm % (2.0 * length);
@@ -108,7 +108,7 @@ impl Contact {
     /// it.
     pub(super) fn tick(&mut self, finger: &Finger, level: f64) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
-        // A sign would jump at each turn and excite all frequencies.
+        // The sign function would jump at each turn, and the jump would excite all frequencies.
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
         // At rest the direction of motion is undefined.
         let slope = if speed > 0.0 { finger.across_mm_s / speed } else { 0.0 };
@@ -140,8 +140,8 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    /// Creates the rig. `inner_hz` is the sample rate of the physics. `rate_hz` is the recording's
-    /// and must not be higher.
+    /// Creates the rig. `inner_hz` is the sample rate of the physics. `rate_hz` is the sample rate
+    /// of the recording, and must not be higher than `inner_hz`.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
         let anti_alias: &[f64] = if inner_hz > rate_hz { &ANTI_ALIAS } else { &[] };

@@ -80,7 +80,8 @@ impl Departures {
         Self { level_speed, ..self }
     }
 
-    /// Sets the exponent with which the level follows the normal force.
+    /// Returns the factor between the texture's level and the level of a relief whose level is
+    /// proportional to the force.
     #[must_use]
     pub const fn with_level_force(self, level_force: f64) -> Self {
         Self { level_force, ..self }
@@ -206,8 +207,8 @@ impl Course {
         }
         let mut draw = |low: f64, high: f64| low + (high - low) * self.random.next_unit();
         self.lifted_s = draw(LIFTED_S[0], LIFTED_S[1]);
-        // With contacts of this mean duration, the finger is off the surface for the given
-        // fraction.
+        // With contacts of this mean duration, the finger is off the surface for the given fraction
+        // of the time.
         let mean_s = 0.5 * (LIFTED_S[0] + LIFTED_S[1]) * (1.0 - lifted) / lifted;
         self.contact_s = draw(0.5 * mean_s, 1.5 * mean_s);
     }

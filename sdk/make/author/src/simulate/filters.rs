@@ -27,8 +27,8 @@ pub(super) fn band_pass(q: f64, hz: f64, rate_hz: f64) -> Biquad {
     analog([0.0, 1.0 / q, 0.0], q, hz, rate_hz)
 }
 
-/// Designs a filter with unit gain in which a fraction of the signal passes a resonance:
-/// `1 - share + share * mode`.
+/// Designs a filter with unit gain in which a fraction of the signal passes through a resonance: `1
+/// - share + share * mode`.
 pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Biquad {
     let (rest, q) = (1.0 - share, 0.5 / damping);
     analog([rest, rest / q, 1.0], q, hz, rate_hz)
@@ -57,8 +57,8 @@ impl OnePole {
         part * part / self.pole_power(hz, rate_hz)
     }
 
-    /// Returns the squared gain, at a frequency, of the high-pass that is the input minus the
-    /// output.
+    /// Returns the squared gain, at a frequency, of the high-pass filter whose output is the input
+    /// minus the output of this low-pass.
     pub(super) fn high_pass_power(&self, hz: f64, rate_hz: f64) -> f64 {
         // 1 - (1 - k) / (1 - k / z) = k (1 - 1 / z) / (1 - k / z).
         let difference = 2.0 - 2.0 * libm::cos(2.0 * PI * hz / rate_hz);

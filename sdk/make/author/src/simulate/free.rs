@@ -91,8 +91,8 @@ impl FreeHand {
         self.finger
     }
 
-    /// Draws random speed, force and duration of the next stroke. It goes in the other direction,
-    /// unless the sheet ends there.
+    /// Draws a random speed, force and duration for the next stroke. The stroke goes in the other
+    /// direction, unless the sheet ends there.
     fn begin_stroke(&mut self) {
         let random = &mut self.random;
         let log_speed = self.speed.draw(random);

@@ -150,7 +150,8 @@ impl Hand {
         self.sweep = Sweep {
             rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.next_unit(),
             ramp_s,
-            // Each ramp covers half the distance of full speed, so both take one ramp longer.
+            // In a ramp, the finger covers half the distance that it would cover at full speed. The
+            // two ramps together therefore add the time of one ramp.
             moving_s: length / speed + ramp_s,
             speed_mm_s: self.direction * speed,
             contact: 1.0 + CONTACT_SCATTER[0] * self.random.next_normal(),
@@ -166,7 +167,8 @@ impl Hand {
     fn press(&mut self) {
         let scatter = FORCE_SCATTER[0] * self.drift.tick(&mut self.random)
             + FORCE_SCATTER[1] * self.tremor.tick(&mut self.random);
-        // Unlike clipping, this leaves no corner in the force, which would excite all frequencies.
+        // Clipping would cause corners in the force, and corners excite all frequencies. This
+        // formula causes no corners.
         self.finger.normal_n =
             self.force_n * (1.0 + FORCE_BOUND * libm::tanh(scatter / FORCE_BOUND));
         self.finger.contact =
@@ -217,8 +219,8 @@ struct Tremor {
 
 impl Tremor {
     fn new(rate_hz: f64) -> Self {
-        // The noise bandwidth of the band-pass, π·f/2Q, as a part of the whole band of half the
-        // rate.
+        // The noise bandwidth of the band-pass, π·f/2Q, as a fraction of the whole bandwidth, which
+        // is half the sample rate.
         let power = PI * TREMOR_HZ / TREMOR_Q / rate_hz;
         Self {
             filter: Cascade::new(&[band_pass(TREMOR_Q, TREMOR_HZ, rate_hz)]),

@@ -1,9 +1,9 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. The paper's Results state,
-//! for five surfaces, which are stronger and at which frequencies their energy lies. The five
-//! simulated surfaces agree with this description. The simulation does not use measurements of real
-//! surfaces. Every simulated file states that it is simulated.
+//! Use them for tests, examples and first steps without a recording rig. For five surfaces, the
+//! paper's Results state which surfaces are stronger, and at which frequencies their energy lies.
+//! The five simulated surfaces agree with this description. The simulation does not use
+//! measurements of real surfaces. Every simulated file states that it is simulated.
 //!
 //! The hand's speed and force vary. A fixed relief gives the friction coefficient at each position
 //! along the surface. The simulation reads the relief at the finger's position. Therefore the
@@ -343,7 +343,8 @@ impl Simulation {
 
     fn push(&mut self, force: Force, finger: &Finger) {
         self.t_s.push(self.t_s.len() as f64 / self.rate_hz);
-        // Rounded here as in the written file, so that both give the same recording.
+        // Rounded here in the same way as in the written file, so that the simulation and the file
+        // give the same recording.
         self.fx_n.push(rounded(force.x, FORCE_DECIMALS));
         self.fy_n.push(rounded(force.y, FORCE_DECIMALS));
         self.fz_n.push(rounded(force.z, FORCE_DECIMALS));
@@ -392,7 +393,8 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, AuthorError> 
         // the contact is computed.
         let level = course.tick(&mut finger);
         let force = rig.tick(contact.tick(&finger, level));
-        // The rig's anti-aliasing filter ran at the inner rate, so samples between may be dropped.
+        // The rig's anti-aliasing filter ran at the inner rate, so the samples in between may be
+        // dropped.
         if step % inner_steps == 0 {
             simulation.push(sense(force, options.rate_hz, &mut noise), &finger);
         }

@@ -13,8 +13,8 @@ use super::surface::{Grain, Line, Parameters};
 pub(super) const POINTS_PER_MM: f64 = 100.0;
 /// Length of the surface including a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
-/// Half the length of the part that is read when the reading point moves at its own pace instead of
-/// the finger's, mm.
+/// Half the length of the part that is read if the reading point does not move at the finger's
+/// speed, mm.
 pub(super) const HALF_READ_MM: f64 = 45.0;
 /// Standard deviation of the Gaussian over which the contact of one ridge averages, mm: -3 dB at
 /// 6.6 periods per millimetre (530 Hz at 80 mm/s).

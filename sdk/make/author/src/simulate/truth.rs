@@ -22,7 +22,7 @@ use crate::AuthorError;
 
 /// Number of cells in each step of the grid. Densities are constant within a cell.
 const CELLS: usize = 32;
-/// Number of bins on either side of a multiple of 5 Hz from which the window takes power.
+/// The window takes power from this number of bins on either side of a multiple of 5 Hz.
 const WINDOW_BINS: usize = 4;
 /// Largest ratio of neighbouring speeds in a written truth.
 const SPEED_RATIO: f64 = 1.02;
@@ -126,8 +126,8 @@ impl Truth {
         let at = |bin: usize| {
             let middle = bin * CELLS;
             let taken = window.iter().enumerate().map(|(i, transfer)| {
-                // A cell above the frequency and its mirror image below it; the middles of the
-                // first pair are half a cell away.
+                // A cell above the frequency and the mirrored cell below it. The middles of the
+                // first two cells are half a cell away from the frequency.
                 let above = power.get(middle + i).copied().unwrap_or(0.0);
                 let below = (middle > i).then(|| power[middle - 1 - i]);
                 transfer * (above + below.unwrap_or(0.0))
@@ -150,7 +150,7 @@ impl Truth {
         let both_axes = 1.0 + ACROSS.0 * ACROSS.0;
         let power = |(cell, filter): (usize, &f64)| {
             let per_mm = (cell as f64 + 0.5) * width;
-            // The points of the relief cannot hold shorter waves.
+            // The points of the relief cannot represent shorter waves.
             if per_mm >= 0.5 * POINTS_PER_MM {
                 return 0.0;
             }

@@ -12,7 +12,7 @@ pub(super) const POSITION_DECIMALS: u32 = 4;
 /// Number of bytes that are collected before they are written.
 const CHUNK: usize = 1 << 16;
 
-/// Rounds to the given number of decimals, to the value that is read back.
+/// Rounds to the given number of decimals. The result is the value that is read back from the file.
 pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
     let scale = 10_u32.pow(decimals) as f64;
     libm::round(value * scale) / scale

@@ -44,7 +44,8 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     (logs.iter().map(stored).collect(), bytes)
 }
 
-/// Noise of unit RMS, shaped by magnitudes on the band's grid as noise models play it.
+/// Noise of unit RMS, shaped by magnitudes on the band's grid, and played in the same way as the
+/// noise of the models.
 pub(crate) struct SpectrumNoise {
     noise: ShapedNoise,
     resampler: Option<Resampler>,

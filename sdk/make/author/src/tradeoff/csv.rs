@@ -5,8 +5,8 @@ use htex_format::{By, Measure};
 
 use crate::tradeoff::{Point, Tradeoff};
 
-/// Returns the cells of a point with their column names: what [`Point`] has in JSON, without the
-/// knobs.
+/// Returns the cells of a point with their column names: the fields that [`Point`] has in JSON,
+/// except the knobs.
 fn cells(p: &Point) -> Vec<(&'static str, String)> {
     let mut cells = Vec::new();
     let mut add = |name: &'static str, cell: String| cells.push((name, cell));

@@ -57,7 +57,7 @@ pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against:
         best_dots.notes = best.iter().map(|p| note(p)).collect();
         plot.series.push(best_dots);
     }
-    // Where the recording is too large to be shown, the floor stands for it.
+    // If the recording is too large to be shown in the plot, the floor represents it.
     let is_inside = |p: &&&Point| against.place(p).0 <= high;
     for point in shown.iter().filter(|p| p.is_baseline()).filter(is_inside) {
         let quantised = point.model == QUANTISED;
@@ -84,9 +84,9 @@ struct Window {
 }
 
 impl Window {
-    /// Shows the front of all models against bytes, and the floor. A model that is far worse than
-    /// the front would otherwise take most of the picture, and the size of the recording most of
-    /// its width. Both pictures show the same errors.
+    /// Shows the front of all models against bytes, and the floor. Otherwise, a model that is far
+    /// worse than the front would take up most of the picture's height, and the size of the
+    /// recording would take up most of its width. Both pictures show the same errors.
     fn new(points: &[&Point], against: Against) -> Self {
         let shown = |cost: Cost| points.iter().copied().filter(move |p| cost.compares(p));
         let models = shown(against.cost).filter(|p| p.model != RECORDING);
@@ -139,7 +139,8 @@ fn floor(shown: &[&Point], against: Against, window: Window) -> Option<Series> {
     Some(line)
 }
 
-/// Converts a front to steps: from each point's cost on, its error can be reached.
+/// Converts a front to steps: at the cost of each point, and at all higher costs, the error of this
+/// point can be reached.
 fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
     let mut steps = Vec::new();
     for point in front {

@@ -24,7 +24,7 @@ impl HeldOut {
     /// Cuts the stretches of a recording that are read into odd and even blocks.
     ///
     /// # Errors
-    /// When the recording has too few blocks to hold any out; the error is the reason.
+    /// Returns the reason as an error if the recording has too few blocks to hold any out.
     pub(crate) fn new(
         part: &SegmentSpectra,
         options: &SpectrumOptions,
@@ -45,8 +45,8 @@ impl HeldOut {
 }
 
 impl Contender {
-    /// Fits the contender to the odd blocks, plays it, and returns the third-octave difference from
-    /// the even blocks in decibels. If the contender is the recording, returns the difference
+    /// Fits the contender to the odd blocks, plays it, and returns the third-octave difference, in
+    /// decibels, from the even blocks. If the contender is the recording, returns the difference
     /// between the odd and the even blocks. `None` if the recording has no blocks.
     pub(crate) fn held_out_error_db(
         &self,

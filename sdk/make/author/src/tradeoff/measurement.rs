@@ -42,7 +42,8 @@ impl Contender {
         let stored = self.store(subject, reference, &self.fit(reference)?)?;
         let held_out_error_db = self.held_out_error_db(subject, quick)?;
         if matches!(self.kind, ContenderKind::Recording) {
-            // A recording cannot differ from itself. Its error is how well its own parts agree.
+            // A recording cannot differ from itself. Its error is therefore the difference between
+            // its own parts.
             let held_out = subject.held_out.as_ref().ok();
             return Ok(held_out.map(|held_out| Measurement {
                 bytes: stored.bytes,

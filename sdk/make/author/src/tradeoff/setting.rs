@@ -54,8 +54,8 @@ impl Setting {
         *self == other
     }
 
-    /// Whether the times can be compared with the times of the default setting. They can if block
-    /// size and output rate are the same.
+    /// Whether the times can be compared with the times of the default setting. The times can be
+    /// compared if block size and output rate are the same.
     pub(crate) fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz
@@ -75,7 +75,7 @@ impl Setting {
         Ok(self)
     }
 
-    /// Returns the values that differ from their defaults as text; `default` if there are none.
+    /// Returns, as text, the values that differ from their defaults; `default` if there are none.
     pub fn words(&self) -> String {
         let default = Self::default();
         let mut words: Vec<String> = self.options.iter().map(|(n, v)| format!("{n}={v}")).collect();

@@ -68,7 +68,8 @@ pub fn sweep(
                 step(1, &format!("{}: measuring", subject.name));
             })?;
         step(0, &format!("{}: timing", subject.name));
-        // Only now: all threads have ended, and nothing else takes time from the contenders.
+        // Times are measured only now, when all threads have ended and nothing else takes computing
+        // time from the contenders.
         let timed = time_all(recording, subject, &contenders, &measured, request.quick, journal)?;
         step(contenders.len(), &subject.name);
         for one in &contenders {
@@ -123,7 +124,8 @@ fn measure_all(
     }
     let open: Vec<&Contender> =
         contenders.iter().filter(|c| !known.contains_key(&c.id())).collect();
-    // What the journal already has counts as done, so that the progress reaches its end.
+    // Entries that the journal already contains count as done, so that the progress reaches its
+    // end.
     (open.len()..contenders.len()).for_each(|_| step());
     let (next, found) = (AtomicUsize::new(0), Mutex::new(known));
     let work = || {
@@ -135,8 +137,8 @@ fn measure_all(
                 },
                 Err(error) => Outcome::Failed { reason: error.to_string() },
             };
-            // Written before the step counts as finished: a sweep that is interrupted here measures
-            // it again.
+            // The result is written before the step counts as finished. If the sweep is interrupted
+            // here, the next sweep measures the contender again.
             let contender = one.id();
             journal.keep(&Entry::Measured {
                 recording,
@@ -154,7 +156,7 @@ fn measure_all(
     std::thread::scope(|scope| {
         // One thread fewer than cores, because this thread works as well.
         let threads: Vec<_> = (1..cores).map(|_| scope.spawn(work)).collect();
-        // All threads are joined even after an error, so that a panic of one is not lost.
+        // All threads are joined even after an error, so that a panic of a thread is not lost.
         let own = work();
         threads.into_iter().fold(own, |all, thread| {
             all.and(thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))

@@ -11,7 +11,7 @@ use crate::tradeoff::Subject;
 use crate::tradeoff::contender::{Contender, StoredData};
 use crate::tradeoff::sound::Sound;
 
-/// Number of samples in a run; also in the warm-up before it, which fills the caches.
+/// Numbers of samples: in a run, and in the warm-up that fills the caches before the run.
 const SAMPLES: usize = 16_384;
 const WARM_UP: usize = 1_024;
 
@@ -100,7 +100,8 @@ impl Playing<'_> {
         let begun = Instant::now();
         render(SAMPLES)?;
         let ns = 1e9 * begun.elapsed().as_secs_f64();
-        // Whole blocks were rendered, so their samples count and not those that were asked for.
+        // Only whole blocks are rendered, so the time is divided by the number of rendered samples,
+        // not by the number of requested samples.
         Ok(ns / (SAMPLES.div_ceil(block) * block) as f64)
     }
 }
@@ -126,7 +127,7 @@ fn turns<T>(
 fn median(mut times: Vec<f64>) -> Median {
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times[(share * (times.len() - 1) as f64).round() as usize];
-    // A clock that is too coarse may give a median of 0, and the spread must stay a number.
+    // If the clock is too coarse, the median may be 0. The spread must be a number even then.
     Median { median: at(0.5), spread: 0.5 * (at(0.75) - at(0.25)) / at(0.5).max(f64::MIN_POSITIVE) }
 }
 

@@ -24,15 +24,15 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     });
     // Inside a script element, only `<` could end the data.
     let data = data.to_string().replace('<', "\\u003c");
-    // The data is inserted last, because the texts in it may contain the other marks, and the title
-    // has none.
+    // The data is inserted last, because its texts may contain the other marks. The title contains
+    // no marks.
     PAGE.replace("@STYLE@", STYLE)
         .replace("@SCRIPT@", SCRIPT)
         .replace("@TITLE@", &escaped(&report.library.name).replace('@', "&#64;"))
         .replace("@DATA@", &data)
 }
 
-/// Returns a text about how many textures were removed and which; empty if there are none.
+/// Returns a text that states how many textures were removed, and which; empty if there are none.
 fn removed(report: &Report) -> String {
     match report.removed.len() {
         0 => String::new(),

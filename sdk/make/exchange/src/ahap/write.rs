@@ -69,8 +69,8 @@ fn events(from_s: f64, to_s: f64) -> impl Iterator<Item = Entry> {
             time,
             event_type: EventType::HapticContinuous,
             event_duration: Some((to_s - time).min(LONGEST_EVENT_S)),
-            // Controls multiply the intensity and are added to the sharpness. With 1 and 0 here,
-            // only the curves determine both.
+            // Controls multiply the intensity and are added to the sharpness. With the values 1 and
+            // 0 here, intensity and sharpness depend only on the curves.
             event_parameters: parameters(1.0, 0.0),
         })
     })

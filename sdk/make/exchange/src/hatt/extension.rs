@@ -10,8 +10,8 @@ use super::texture::Texture;
 /// The extension's name in an asset.
 pub const EXTENSION: &str = htex_format::HATT;
 
-/// Numbers from a model file of the Penn Haptic Texture Toolkit that a player of the texture does
-/// not need.
+/// Numbers from a model file of the Penn Haptic Texture Toolkit. A player of the texture does not
+/// need these numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Hatt {

@@ -9,8 +9,8 @@ use super::work::Work;
 use super::zeros::{NotFound, inside};
 use crate::error::Fault;
 
-/// Largest difference, radians, that causes no warning: between a line spectral frequency in the
-/// file and the same frequency computed from the coefficients.
+/// Largest difference that causes no warning, radians. The difference is between a line spectral
+/// frequency in the file and the same frequency computed from the coefficients.
 const LINE_ERROR: f64 = 1e-3;
 
 /// The problem that is reported for a file whose filters take too much work.

@@ -246,8 +246,7 @@ impl Clock {
         (self.first + index) as f64 / self.rate_hz - self.from_s
     }
 
-    /// Returns the index of the first sample at or after a time, which counts from the effect's
-    /// start.
+    /// Returns the index of the first sample at or after a time since the effect's start.
     fn index(self, into_s: f64) -> usize {
         first_from(self.from_s + into_s, self.rate_hz).saturating_sub(self.first)
     }

@@ -49,7 +49,7 @@ impl Space {
         libm::round(time_s * f64::from(self.timescale()) * self.per_s()) as i64
     }
 
-    /// Returns the metres per second; 1 for a vibration over time.
+    /// Returns the speed in metres per second; 1 for a vibration over time.
     fn per_s(self) -> f64 {
         self.speed_mm_s.map_or(1.0, |speed| speed / 1e3)
     }

@@ -28,7 +28,8 @@ pub(crate) fn import(
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| fault(&error))?;
     let grey: Vec<f64> = image.grey.iter().map(|grey| f64::from(*grey)).collect();
-    // Rounded as they are stored, because a spectral line may lie on an edge of the band.
+    // The numbers are rounded in the same way as stored numbers, because a spectral line may lie on
+    // an edge of the band.
     let [stored_mm, speed_mm_s, force_n] =
         [pitch_mm, values.speed_mm_s, values.force_n].map(|x| f64::from(x as f32));
     let rms = htex_map::rms(image.width, stored_mm, speed_mm_s, &grey, Band::TACTILE);

@@ -15,9 +15,11 @@ const GAP: f64 = 1.5;
 /// longer than the median by more than this factor.
 const GAP_UNEVEN: f64 = 10.0;
 /// A clock counts as uneven if the interquartile range of its steps, divided by their median, is
-/// above this. Normally distributed steps with this scatter put one step in 200,000 beyond [`GAP`].
+/// above this. If steps are normally distributed with this scatter, one step in 200,000 exceeds
+/// [`GAP`].
 const UNEVEN: f64 = 0.15;
-/// The reader reports jitter of the steps (standard deviation divided by mean) above this.
+/// The reader reports a jitter of the steps (standard deviation divided by mean) that is above this
+/// value.
 const JITTER: f64 = 0.01;
 /// The reader warns if the rate of the time column differs from the given rate by more than this
 /// fraction.
@@ -160,8 +162,8 @@ fn measure(
 fn longest_step(mut steps: Vec<f64>) -> f64 {
     let last = steps.len() - 1;
     let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
-    // Each rank is selected on its own, which takes linear time; sorting millions of steps would
-    // not.
+    // Each rank is selected on its own, because a selection takes linear time, and sorting millions
+    // of steps takes longer.
     let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
     let is_even = high - low <= UNEVEN * median;
     // A step that is too long only because of rounding is not a gap.

@@ -64,8 +64,8 @@ const NAMES: [(Role, &[&str]); 8] = [
     (Role::Y, &["y", "pos_y", "y_pos", "position_y", "y_position", "finger_y"]),
 ];
 
-/// Unit suffixes after an underscore. Each suffix stands before all shorter suffixes with which it
-/// ends, so that the longest one is found first.
+/// Unit suffixes after an underscore. If a suffix ends with a shorter suffix, the longer one comes
+/// first in this list, so that it is found first.
 const SUFFIXES: [&str; 23] = [
     "mm_s2", "cm_s2", "m_s2", "mm/s2", "cm/s2", "m/s2", "mm_s", "cm_s", "um_s", "m_s", "mm/s",
     "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us", "s", "mm",

@@ -51,8 +51,8 @@ impl RowMap {
     ) -> Result<Self, ReadError> {
         let mut row_map =
             Self::with(source, channels, map, quantity, |columns| select(columns, map, quantity))?;
-        // A notice has no code, so this depends on the words of `Selection::warn_of_unused`. A card
-        // has more channels than a texture needs, so the warning would always be there.
+        // A notice has no code, so this check depends on the words of `Selection::warn_of_unused`.
+        // A card has more channels than a texture needs, so the warning would always appear.
         let is_unused = |warning: &Notice| warning.starts_with("Columns not used");
         let warnings = &mut row_map.selection.warnings;
         warnings.retain(|warning| !is_unused(warning));
@@ -138,7 +138,7 @@ impl RowMap {
         base_unit(role, self.quantity)
     }
 
-    /// Returns the indices of the channels that are used, ascending.
+    /// Returns, in ascending order, the indices of the channels that are used.
     #[must_use]
     pub fn channels(&self) -> Vec<usize> {
         let chosen = self.selection.chosen.iter();

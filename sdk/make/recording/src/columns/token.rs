@@ -92,7 +92,7 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
 /// operator may come next.
 fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usize), String> {
     if let Some(operator) = operator(first)
-        // After an operand a slash divides; before one it begins a path.
+        // After an operand, a slash is a division. Before an operand, it begins a path.
         && (first != '/' || ends_operand || !path_follows(text))
     {
         return Ok((operator, 1));
@@ -208,7 +208,7 @@ fn name_length(text: &str) -> usize {
     text.len()
 }
 
-/// Returns the closing bracket, such as a unit's, if it comes before the next comma.
+/// Returns the closing bracket, for example of a unit, if it comes before the next comma.
 fn closes(text: &str, end: char) -> Option<char> {
     let here = text.find([end, ','])?;
     text[here..].starts_with(end).then_some(end)

@@ -228,7 +228,8 @@ impl Arrow {
             else {
                 return Err(missing());
             };
-            // The bits may be left out if no value is missing, so they are read only if one is.
+            // The bits may be left out if no value is missing, so they are read only if a value is
+            // missing.
             let validity = match nulls {
                 0 => None,
                 _ => Some(self.buffer(batch.message, bits, codec, batch.rows.div_ceil(8))?),

@@ -66,8 +66,8 @@ impl<'a> Blocks<'a> {
         Ok((!block.is_empty()).then_some(block))
     }
 
-    /// Returns the first lines, without a byte order mark: as many as are needed to contain two
-    /// rows, if there are two.
+    /// Returns the first lines, without a byte order mark. If the file has at least two rows, these
+    /// lines contain two rows.
     pub(crate) fn head(&mut self) -> Result<String, Fault> {
         let (mut head, mut rows, mut before) = (String::new(), 0, 0);
         while rows < 2 {

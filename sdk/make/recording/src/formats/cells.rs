@@ -24,7 +24,7 @@ pub(crate) fn sniff(first: &str, second: &str) -> Delimiter {
     if let Some(delimiter) = bytes.into_iter().filter(agreed).max_by_key(most) {
         return delimiter;
     }
-    // Only now, because cells that are separated by commas may contain spaces.
+    // Spaces are tried only now, because cells that are separated by commas may contain spaces.
     if agreed(&Delimiter::Whitespace) {
         return Delimiter::Whitespace;
     }

@@ -64,8 +64,8 @@ impl<R: Read> SampleDecoder<R> {
     /// Decodes the next block; returns false at the end.
     fn advance(&mut self) -> Result<bool, Fault> {
         self.before += u64::from(self.block.duration());
-        // The decoder fills the buffer of the last block again, so that not every block allocates
-        // one.
+        // The decoder reuses the buffer of the last block, so that it does not allocate a buffer
+        // for every block.
         let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();
         let place = |at: u64| format!("sample {at} (counted from 0)");
         let block = self.reader.blocks().read_next_or_eof(buffer).map_err(|error| {
@@ -74,7 +74,7 @@ impl<R: Read> SampleDecoder<R> {
         })?;
         let Some(block) = block else {
             return match self.expected {
-                // The decoder takes the end of the file after a whole block for the end of the
+                // If the file ends after a whole block, the decoder takes this for the end of the
                 // stream.
                 Some(expected) if self.before < expected => {
                     let problem = format!(

@@ -178,7 +178,8 @@ impl Scan {
         depth: usize,
     ) -> Result<(), ReadProblem> {
         let end = inside.at + bytes;
-        // A field is counted again inside its struct, so this is at most the depth times too much.
+        // A field is counted again as a part of its struct, so the sum is too large by a factor of
+        // at most the depth.
         self.scanned = self.scanned.saturating_add(bytes);
         if self.scanned > MOST_BYTES {
             return Err(ReadProblem::Invalid(format!(

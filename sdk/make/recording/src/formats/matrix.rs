@@ -95,7 +95,7 @@ impl<T> Arrays<T> {
         self.columns.len() <= MOST_COLUMNS
     }
 
-    /// Adds a scalar, if its name is a sample rate's.
+    /// Adds a scalar, if it has one of the names for a sample rate.
     pub(crate) fn add_scalar(&mut self, name: &str, value: f64) {
         let last = name.rsplit(self.separator).next().unwrap_or(name);
         if is_rate_name(last) && value.is_finite() && value > 0.0 && self.rates.len() < MOST_COLUMNS
@@ -108,8 +108,9 @@ impl<T> Arrays<T> {
         Columns::new(self.names.iter().cloned(), Some(self.separator))
     }
 
-    /// Returns the rate stated nearest to the wanted columns: in their own group or array, or else
-    /// in an enclosing one. Different rates at the same distance are an error.
+    /// Returns the rate that is stated nearest to the wanted columns: in their own group or array
+    /// or, if there is none, in an enclosing one. Different rates at the same distance are an
+    /// error.
     pub(crate) fn rate_hz(
         &self,
         columns: &Columns,

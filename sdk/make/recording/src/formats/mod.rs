@@ -78,7 +78,7 @@ macro_rules! reader {
     }};
 }
 
-/// Text: the format of any file without a known signature and a known extension.
+/// Text: the format of any file that has neither a known signature nor a known extension.
 const CSV: Format = Format {
     name: "CSV",
     extensions: &["csv", "tsv", "txt"],

@@ -8,7 +8,7 @@ use crate::formats::bytes::{Endian, NumberType};
 
 /// Longest header that is read, bytes; NumPy writes 118 bytes for plain arrays.
 const MAX_HEADER: usize = 16 << 10;
-/// What can be read instead of other records.
+/// Text that says what can be read instead of other records.
 const PLAIN: &str = "save fields of the types f4, f8, i2 or i4, or a plain float array";
 
 /// What an NPY header states.
@@ -16,7 +16,8 @@ const PLAIN: &str = "save fields of the types f4, f8, i2 or i4, or a plain float
 pub(crate) struct Header {
     /// Number of bytes before the values.
     pub(crate) bytes: usize,
-    /// Types of the fields of a record, in their order; of a plain array, the type of its values.
+    /// For records, the types of the fields, in their order. For a plain array, the type of its
+    /// values.
     pub(crate) types: Vec<(NumberType, Endian)>,
     /// Names of the fields of a record; `None` for a plain array.
     pub(crate) names: Option<Vec<String>>,
@@ -30,7 +31,8 @@ impl Header {
     pub(crate) fn parse(front: &[u8]) -> Result<Self, ReadProblem> {
         let (bytes, text) = text(front)?;
         let described = value(&text, "descr")?;
-        // A field may have the name of another key, so these are looked for behind the fields.
+        // A field may have the same name as one of the other keys, so these keys are searched for
+        // only after the fields.
         let (types, names, rest) = match described.strip_prefix('[') {
             Some(fields) => {
                 let (fields, rest) = records(fields)?;
@@ -111,7 +113,7 @@ fn records(mut rest: &str) -> Result<(Vec<Field>, &str), ReadProblem> {
         let (name, field) = quoted(field).ok_or_else(other)?;
         let descr = field.trim_start_matches([' ', ',']);
         let (_, field) = quoted(descr).ok_or_else(other)?;
-        // Another element is the shape of an array in the field.
+        // A third element would be the shape of an array in the field, and is refused.
         let field = field.trim_start_matches([' ', ',']).strip_prefix(')').ok_or_else(other)?;
         fields.push((name.to_owned(), kind(descr)?));
         rest = field;

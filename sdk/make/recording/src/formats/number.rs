@@ -62,7 +62,7 @@ fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
         decimals = behind.len() - rest.len();
     }
     let count = integer_digits + decimals;
-    // Up to 2^53 an integer is exact, and so are powers of ten up to 10^22.
+    // Integers up to 2^53 and powers of ten up to 10^22 are exact.
     if count == 0 || count > 16 || mantissa > 1 << 53 {
         return None;
     }
@@ -71,7 +71,7 @@ fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
 }
 
 /// Appends the digits at the start to `value` and returns the rest. The value wraps around after 19
-/// digits; the caller refuses that many digits by their count.
+/// digits; the caller counts the digits and refuses that many.
 #[inline(always)]
 fn digits(text: &[u8], value: u64) -> (u64, &[u8]) {
     if let Some(front) = text.first_chunk::<USUAL>() {

@@ -72,9 +72,9 @@ fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Resul
         let mut reader = ByteReader::new(input, piece.endian);
         return Ok(reader.values(piece.kind, piece.values, |_, value| values.push(value))?);
     }
-    // Reads whole rows of interleaved channels, several at once.
-    // A read for every value would cost a call of the system each. One row at least, however many
-    // channels it has.
+    // Reads whole rows of interleaved channels, several at once. A separate read for every value
+    // would cost a system call for every value. At least one row is read, however many channels it
+    // has.
     let rows_at_once = (256 << 10) / piece.stride + 1;
     let mut done = 0;
     while done < piece.values {

@@ -110,8 +110,8 @@ impl Directory {
         let mut input = BufReader::new(input);
         while self.segment < length {
             let here = input.stream_position()?;
-            // A relative seek keeps what is in the buffer. Files of many small segments would
-            // otherwise be read again for each of them.
+            // A relative seek keeps the contents of the buffer. Otherwise, a file with many small
+            // segments would be read again for each segment.
             input.seek_relative(self.segment.wrapping_sub(here) as i64)?;
             let mut reader = ByteReader::new(&mut input, Endian::Little);
             let segment = self.lead_in(&mut reader, length)?;
@@ -247,8 +247,7 @@ impl Directory {
         }
     }
 
-    /// Takes a channel that has no values in this segment out of the list that the segment before
-    /// left.
+    /// Removes a channel that has no values in this segment from the list of the previous segment.
     fn remove_current(&mut self, channel: usize) {
         self.channels[channel].list = 0;
         self.current.retain(|own| *own != channel);
@@ -304,7 +303,7 @@ impl Directory {
             .current
             .iter()
             .filter_map(|channel| Some((*channel, self.channels[*channel].layout?)))
-            // An empty channel takes no part, also not in the rows of interleaved ones.
+            // An empty channel is ignored, even in the rows of interleaved channels.
             .filter(|(_, layout)| layout.values > 0)
             .collect();
         let chunk_bytes =

@@ -101,7 +101,7 @@ impl Player {
         self.tracks.push(Track { voice, progress: 0.0, step: self.step });
     }
 
-    /// Sends voices that have faded out to the other thread.
+    /// Sends to the other thread all voices that have faded out.
     fn drop_silent(&mut self) {
         for index in (0..self.tracks.len()).rev() {
             let Track { progress, step, .. } = self.tracks[index];
@@ -122,7 +122,7 @@ pub(crate) fn open(texture: &str, rate_hz: f64) -> Result<Box<Voice>, htex::Erro
     Ok(Box::new(texture.voice(&options)?))
 }
 
-/// Writes four seconds of a stroke over the textures, one after the other, to a WAV file.
+/// Writes a WAV file with four seconds of a stroke over the textures, one texture after the other.
 pub(crate) fn write_wav(file: &Path, textures: &[String]) -> Result<(), Box<dyn Error>> {
     const RATE_HZ: u32 = 48_000;
     let (mut player, mut remote) = Player::new(RATE_HZ.into());

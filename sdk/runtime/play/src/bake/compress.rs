@@ -118,9 +118,9 @@ impl StoredFilters {
     }
 }
 
-/// Weights the responses at each frequency by the square root of a sum: the inverse power of all
-/// conditions at this frequency. The product of two weighted responses is then relative to the
-/// power at this frequency.
+/// Weights the responses at each frequency by the square root of a sum over all conditions: the sum
+/// of their inverse powers at this frequency. The product of two weighted responses is then
+/// relative to the power at this frequency.
 fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let frequencies = responses.first().map_or(0, Vec::len);
     let mut inverse = vec![0.0; frequencies];

@@ -241,8 +241,8 @@ impl Designs {
         let lengths =
             if self.is_best { self.length..self.length + 1 } else { self.length..self.lengths };
         for length in lengths {
-            // A longer filter is useful only if it is more accurate, so its first worse condition
-            // ends the attempt.
+            // A longer filter is useful only if it is more accurate, so the attempt ends as soon as
+            // the error at a condition exceeds the smallest error so far.
             let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
             let Some(shape) = with(length, least_db)? else {
                 continue;
@@ -431,7 +431,8 @@ impl GridDesign {
         Err(Error::Refused(htex_player::OpenError::Values))
     }
 
-    /// Returns the length of a block with `count` filters as long as the stored filters, bytes.
+    /// Returns the size, in bytes, of a block with `count` filters that have the same length as the
+    /// stored filters.
     fn bytes(&self, grid: &Grid, stored: &StoredFilters, count: usize) -> usize {
         let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
         let conditions = self.moments.len();
@@ -470,7 +471,7 @@ impl GridDesign {
     }
 }
 
-/// Returns the smallest and the largest factor of frequencies.
+/// Returns the smallest and the largest factor by which frequencies are multiplied.
 fn ratios(moments: &[Rc<Moment>]) -> [f64; 2] {
     let ratios = || moments.iter().map(|m| m.ratio);
     let slowest = ratios().fold(f64::INFINITY, f64::min);

@@ -181,8 +181,8 @@ impl Bins {
         }
     }
 
-    /// Returns the magnitude at the bins of white noise with unit variance that passes a filter
-    /// with this response.
+    /// Returns, at the bins, the magnitude of white noise with unit variance after it has passed
+    /// through a filter with this response.
     pub(crate) fn read(&self, response: &[f64]) -> Vec<f64> {
         let at = |(first, weights): &(usize, Vec<f64>)| {
             let reached = response[*first..].iter().zip(weights);

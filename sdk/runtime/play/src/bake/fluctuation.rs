@@ -2,9 +2,10 @@
 
 use htex_format::Fluctuation;
 
-/// A player computes the envelope about this often, hertz, and interpolates it linearly between.
+/// Approximate rate at which a player computes values of the envelope, hertz. The player
+/// interpolates linearly between these values.
 const VALUES_HZ: f64 = 500.0;
-/// Sinusoids of each part of the envelope's logarithm.
+/// Number of sinusoids in each part of the envelope's logarithm.
 const LINES: usize = 8;
 /// Lowest frequency of each part, and the width of the range of each sinusoid, hertz.
 const PARTS_HZ: [[f64; 2]; 2] = [[0.5, 0.9375], [8.0, 3.0]];
@@ -36,7 +37,7 @@ impl BlockFluctuation {
                 product += ln_bessel(2.0 * amplitude * libm::cos(half));
             }
         }
-        // Linear interpolation between two values lowers the mean square to this part.
+        // Linear interpolation between two values reduces the mean square to this fraction.
         let interpolated = (2.0 + libm::exp(product - square)) / 3.0;
         let offset = -0.5 * (square + libm::log(interpolated)) / std::f64::consts::LN_2;
         Self { period: period as u16, strength, offset: offset as f32 }

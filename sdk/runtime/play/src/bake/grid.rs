@@ -141,7 +141,7 @@ impl Grid {
     }
 }
 
-/// Returns each value on its own, and each pair of neighbours, together with the first index.
+/// Returns each single value and each pair of neighbours, each with the index of its first value.
 fn spans(axis: &[f64]) -> impl Iterator<Item = (usize, &[f64])> {
     let single = axis.chunks(1).enumerate();
     single.chain(axis.windows(2).enumerate())

@@ -57,8 +57,8 @@ impl Designer {
         if let Some(known) = self.filters.borrow().get(&key) {
             return Ok(Rc::clone(known));
         }
-        // `bins` borrows the design itself, so it is called before the design is borrowed for
-        // writing.
+        // The function `bins` itself borrows the design, so it is called before the design is
+        // borrowed for writing.
         let bins = self.bins(moment.ratio);
         let mut design = self.design.borrow_mut();
         let played = design.frequencies_hz().into_iter();

@@ -23,8 +23,8 @@ type Corners = [usize; 3];
 /// Returns the triangles, with each cell replaced by a fan from its lowest index. `places` are in
 /// ascending order of their first coordinate, then their second.
 ///
-/// A cell keeps its triangles if a fan would turn one of them over. This occurs only on the hull,
-/// where rounding bends a line. Such triangles are not used for interpolation.
+/// A cell keeps its own triangles if a triangle of the fan would be turned over. This occurs only
+/// on the hull, where rounding bends a line. Such triangles are not used for interpolation.
 pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners> {
     let mut fanned = Vec::with_capacity(triangles.len());
     for cell in cells(triangles, places).into_values() {

@@ -28,7 +28,8 @@ fn need(required: &Requirements, played: &PlayedSurface) -> Need {
 fn build(required: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
     // Without an envelope the stage is neutral.
     let fluctuation = played.fluctuation.filter(|_| !neutral);
-    // A constant frequency ratio reads the frames faster, but not the time of the finger.
+    // With a constant frequency ratio, the frames are read faster, but the time of the finger stays
+    // the same.
     let rate_hz = played.mix_rate_hz * played.fixed_ratio;
     let seed = required.seed.wrapping_add(played.surface as u64);
     Box::new(Fluctuating(fluctuation.map(|f| RandomEnvelope::new(f.decibels(), rate_hz, seed))))

@@ -27,9 +27,9 @@ impl Synthesis {
         }
     }
 
-    /// Tells a model that follows the motion itself where the finger is, `at_s` seconds after the
-    /// first sample. If the model refuses the motion, the voice continues unchanged and the failure
-    /// is stored.
+    /// Passes the motion of the finger, `at_s` seconds after the first sample, to a model that
+    /// follows the motion itself. If the model refuses the motion, the voice continues unchanged
+    /// and the failure is stored.
     pub(crate) fn follow_finger(&mut self, motion: Motion, at_s: f64) {
         if let Err(error) = self.source.follow(motion, at_s) {
             self.failed.get_or_insert(error);

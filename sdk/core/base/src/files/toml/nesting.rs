@@ -20,9 +20,9 @@ struct Open {
 /// Counts the levels of a text, which may contain any errors.
 ///
 /// The parser recurses at an opening bracket, and returns at the closing bracket of the same kind
-/// or at the end. So in a text whose brackets match, each of the parser's calls has an open bracket
-/// here. The parser puts a value below the last key that it read. After an error, this may be any
-/// key since the bracket was opened, so the longest one counts.
+/// or at the end. So in a text whose brackets match, each recursive call of the parser corresponds
+/// to an open bracket in this count. The parser puts a value below the last key that it read. After
+/// an error, this may be any key since the bracket was opened, so the longest one counts.
 #[derive(Default)]
 struct Nesting {
     open: Vec<Open>,

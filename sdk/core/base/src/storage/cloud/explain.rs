@@ -62,8 +62,8 @@ impl Store {
             Fail::Request(error) if matches!(*error, Error::NotSupported { .. }) => {
                 StorageProblem::NoRanges
             }
-            // After a body that was cut off, a successful response belongs to another version of
-            // the file.
+            // If a body was cut off and a later request succeeded, this response belongs to another
+            // version of the file.
             Fail::Body if matches!(last, Last::Status { status: 200..=299, .. }) => {
                 StorageProblem::Changed
             }
@@ -94,8 +94,8 @@ impl Store {
             416 => StorageProblem::Refused {
                 what: format!("{what}: the range begins after the end of the file"),
             },
-            // Too slow, too many requests, and failures of the server: the library has already
-            // tried again.
+            // The server was too slow, got too many requests, or failed. The library has already
+            // retried the request.
             408 | 429 | 500.. => self.unavailable(what, seconds),
             200..=299 => StorageProblem::Refused {
                 what: format!(

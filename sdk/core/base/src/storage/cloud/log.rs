@@ -148,7 +148,7 @@ impl LoggingClient {
     fn is_list(&self, request: &HttpRequest) -> bool {
         let query = request.uri().query().unwrap_or_default();
         let is = |part: &str| part.starts_with("list-type=") || part == "comp=list";
-        // The query of a web server's URL is the user's and may contain anything.
+        // The query in the URL of a web server comes from the user and may contain anything.
         matches!(self.client, Client::Store(_)) && query.split('&').any(is)
     }
 }

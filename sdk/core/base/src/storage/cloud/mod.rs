@@ -54,7 +54,7 @@ impl Store {
         let problem = |problem| StorageProblem::Settings { problem }.at_place(location);
         let of = |by| clients.client_for(by, settings).map_err(problem);
         let by = if is_of_person { UrlSource::Person } else { UrlSource::Other };
-        // The server of a store is named in the environment, so by the user.
+        // An environment variable names the server of a store, so the user has chosen this server.
         let client = if uri.scheme.is_read_only() {
             Client::Web(RedirectClient { first: of(by)?, world: of(UrlSource::Other)?, by })
         } else {

@@ -14,7 +14,7 @@ use super::log::Connector;
 use crate::storage::location::{Scheme, Uri};
 use crate::storage::{Settings, Variables};
 
-/// Largest ratio of a pause to the pause before.
+/// Largest ratio of a pause to the previous pause.
 const PAUSE_GROWTH: f64 = 6.0;
 
 /// A store, the key in it, and whether requests are signed.

@@ -52,8 +52,9 @@ impl Store {
             file.read_to_end(&mut bytes).map_err(StorageError::io_at(path.display()))?;
             return self.write(bytes);
         }
-        // The work itself may take the total time. After a failure, the parts still under way are
-        // awaited and the others removed, each within this much longer.
+        // The upload itself may take the total time. After a failure, the program waits for the
+        // parts that are still being sent, and then removes the other parts. Each of these two
+        // steps may take [`ABORT`].
         let limit = self.settings.total + 2 * ABORT;
         self.run_within(limit, self.clone().in_parts(file))
     }
@@ -81,7 +82,8 @@ impl Store {
         let done = tokio::time::timeout(self.settings.total, work).await;
         let fail = match done.unwrap_or(Err(Fail::Slow)) {
             Ok(()) => return Ok(()),
-            // Explained now, before the request that removes the parts becomes the last request.
+            // The failure is explained now, because the request that removes the parts would then
+            // become the last request.
             Err(fail) => Fail::Own(self.explain(fail, begun)),
         };
         let _ = tokio::time::timeout(ABORT, upload.abort()).await;

@@ -16,8 +16,8 @@ const PANEL: (f64, f64) = (210.0, 190.0);
 /// Colour of the recording when it is drawn behind a model.
 const BACKDROP: &str = "#a3a3a3";
 
-/// A model is clipped at this multiple of the recording's maximum. With higher axes the recording
-/// would be too flat to read.
+/// A model is clipped at this multiple of the recording's maximum. On a longer axis, the curve of
+/// the recording would be too flat to read.
 const OVERSHOOT: f64 = 2.0;
 
 /// Returns the colour key and the rows of all textures.

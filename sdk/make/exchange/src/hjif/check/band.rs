@@ -95,8 +95,8 @@ fn check_keyframe(keyframe: &Keyframe, before: i64, at: &str) -> Result<(), Faul
     Ok(())
 }
 
-/// Checks a block of wavelets. It must have all its coefficients, and their largest value as the
-/// last keyframe.
+/// Checks a block of wavelets. The block must have all its coefficients, and its last keyframe must
+/// contain their largest value.
 fn check_block(effect: &Effect, at: &str) -> Result<(), Fault> {
     let samples = effect.keyframes.len().saturating_sub(1);
     if (8..=MOST_BLOCK).contains(&samples) && samples.is_power_of_two() {

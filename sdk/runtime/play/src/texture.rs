@@ -201,7 +201,8 @@ impl Texture {
         self.representation(None)?.magnitude(motion, frequency_hz)
     }
 
-    /// Returns the level of the best representation at a motion.
+    /// Returns the level of the best representation at a motion, or at the default condition if
+    /// `motion` is `None`. The level is an RMS in the texture's unit.
     ///
     /// # Errors
     /// Returns the same errors as [`Representation::level_rms`].

@@ -66,8 +66,8 @@ pub(crate) struct Bake {
 
     /// Also store how much the texture's strength fluctuates over time, if the asset contains this
     /// information (`htex info` shows it). The player then lets the strength of the texture
-    /// fluctuate, with the same mean level. It has not been tested on people whether this makes a
-    /// texture feel more real
+    /// fluctuate, with the same mean level. Nobody has tested whether this makes a texture feel
+    /// more real
     #[arg(long)]
     fluctuation: bool,
 

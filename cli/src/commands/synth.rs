@@ -44,7 +44,7 @@ pub(crate) struct Synth {
 
     /// Let the strength of the texture fluctuate over time as in its recording, if the asset
     /// contains this fluctuation (`htex info` shows it). The fluctuation does not change the mean
-    /// level. It has not been tested on people whether this makes a texture feel more real
+    /// level. Nobody has tested whether this makes a texture feel more real
     #[arg(long)]
     fluctuation: bool,
 

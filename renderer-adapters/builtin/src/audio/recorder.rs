@@ -83,8 +83,8 @@ impl Recorder {
         frames
     }
 
-    /// Returns the error that stopped the input, if there is one. No samples follow those in the
-    /// ring buffer then.
+    /// Returns the error that stopped the input, if there is one. After an error, the input delivers
+    /// only the samples that are still in the ring buffer.
     fn fault(&mut self) -> Option<DeviceError> {
         if let Some(what) = self.failure.peek() {
             return Some(failed(&self.name, what));

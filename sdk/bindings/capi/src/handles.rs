@@ -274,14 +274,14 @@ const FULL: Failure = Failure::plain(
     "67 million objects of a kind are in use; free some",
 );
 
-/// An object that one thread uses exclusively, until this is dropped.
+/// Gives one thread exclusive use of an object, until the guard is dropped.
 pub(crate) struct Exclusive<T: 'static> {
     value: &'static mut T,
     slot: &'static Slot<T>,
 }
 
-/// An object that this thread reads, until this is dropped. Other threads may read it at the same
-/// time.
+/// Lets this thread read an object, until the guard is dropped. Other threads may read the object at
+/// the same time.
 pub(crate) struct Shared<T: 'static> {
     value: &'static T,
     slot: &'static Slot<T>,

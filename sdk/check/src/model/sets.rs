@@ -156,8 +156,8 @@ impl Case {
     }
 }
 
-/// Returns whether an error means that parameters within their ranges describe no spectrum in a
-/// band.
+/// Returns whether a model may return this error for valid parameters. Parameters can be within
+/// their ranges and still describe no spectrum in a band.
 pub(crate) fn describes_nothing(error: &HostError) -> bool {
     matches!(
         error,

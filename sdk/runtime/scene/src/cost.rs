@@ -15,8 +15,8 @@ pub struct Costs {
     /// Time to render one sample of a voice at the model's own rate, nanoseconds, for each model
     /// id.
     pub model_ns: BTreeMap<String, f64>,
-    /// Time to interpolate two parameter sets and change a voice to the result, nanoseconds, for
-    /// each model id.
+    /// For each model id, the time in nanoseconds to interpolate between two parameter sets and to
+    /// retune a voice to the result.
     pub retune_ns: BTreeMap<String, f64>,
     /// Time to process one sample at the stage's rate, nanoseconds, for each stage.
     pub stage_ns: BTreeMap<String, f64>,

@@ -22,8 +22,8 @@ class Agreement:
     matching_gain_db: float
     """Gain that makes the total energies equal, decibels."""
     band_error_matched_rms_db: float
-    """RMS of the nine band errors after one gain that equalises the total energy, decibels."""
+    """RMS of the nine band errors, decibels, after a gain has made the total energies equal."""
     third_octave_error_rms_db: float | None
     """RMS error over third-octave bands, decibels; ``None`` for a reference without energy in them."""
     log_spectral_distance_db: float | None
-    """RMS over the bins of the difference of the magnitudes in decibels; ``None`` for a silent reference."""
+    """RMS, over the bins, of the differences between the magnitudes in decibels; ``None`` for a silent reference."""

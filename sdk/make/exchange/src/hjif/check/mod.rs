@@ -19,8 +19,8 @@ const MOST_TICKS: f64 = 4_294_967_295.0;
 const MOST_HZ: f64 = 1e7;
 /// Largest gain of a channel.
 const MOST_GAIN: f64 = 1e6;
-/// Largest number of channels in a perception and of bands in a channel. Each constant has the
-/// number for level 1, then for level 2.
+/// Largest number of channels in a perception and of bands in a channel. In each array, the first
+/// number is for level 1 and the second for level 2.
 const MOST_CHANNELS: [usize; 2] = [128, 65_536];
 const MOST_BANDS: [usize; 2] = [7, 65_536];
 

@@ -9,6 +9,7 @@ use htex_base::files::FileError;
 use htex_base::finding::{Finding, Hint, listed, plain};
 use htex_base::storage::{StorageError, StorageProblem};
 use htex_device::DeviceError;
+use htex_format::ReadError;
 use htex_format::library::LibraryError;
 use htex_host::HostError;
 use htex_scene::SceneError;
@@ -265,8 +266,8 @@ impl From<htex_format::WriteError> for Failure {
     }
 }
 
-impl From<htex_format::ReadError> for Failure {
-    fn from(error: htex_format::ReadError) -> Self {
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
         htex::Error::from(error).into()
     }
 }

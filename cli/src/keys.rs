@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use htex_base::files::{AtFile, OwnFolder, private, random_key, read_regular};
 use htex_base::native::folders;
 use htex_base::storage::{Location, Storage};
+pub(crate) use htex_format::signing::signature_path;
 use htex_format::signing::{
     FileSignature, PublicKey, SIGNATURE_EXTENSION, SecretKey, SignedContent, SignedKind,
-    TrustedKey, TrustedKeys,
+    TrustedKey, TrustedKeys, read_signature_at,
 };
 use serde::Serialize;
 
@@ -135,12 +136,14 @@ impl KeyRing {
 
     /// Returns the trusted key of this name, or the public key with these digits.
     pub(crate) fn signer(&self, name: &str) -> Result<PublicKey> {
-        match self.trusted()?.named(name) {
+        let keys = self.trusted()?;
+        let digits = name.parse();
+        match keys.named(name).or_else(|| keys.of(digits.as_ref().ok()?)) {
             Some(TrustedKey { revoked: true, .. }) => {
                 Err(Failure::Usage(format!("you revoked the key `{name}`")))
             }
             Some(key) => Ok(key.public_key),
-            None => name.parse().map_err(|_| {
+            None => digits.map_err(|_| {
                 Failure::Usage(format!(
                     "`{name}` is no key that you trust: `htex key trust {name} KEY` adds it, and `htex key list` shows your keys"
                 ))
@@ -242,7 +245,7 @@ pub(crate) fn signer_at(
     file: &Location,
     content: impl FnOnce(&FileSignature) -> Result<SignedContent>,
 ) -> Result<Option<Signer>> {
-    let Some(bytes) = signature_beside(&Storage::from_environment()?, file)? else {
+    let Some(bytes) = read_signature_at(&Storage::from_environment()?, file)? else {
         return Ok(None);
     };
     let signature = match FileSignature::from_json(&bytes) {
@@ -265,22 +268,7 @@ pub(crate) fn plugin_content(file: &Path, signature: &FileSignature) -> Result<S
     Ok(SignedContent::plugin(kind, &told.name, &told.version, &bytes))
 }
 
-/// Reads the signature of a file; `None` if there is no `.sig` file beside it.
-pub(crate) fn signature_beside(storage: &Storage, file: &Location) -> Result<Option<Vec<u8>>> {
-    let signature = signature_location(file)?;
-    let is_there = storage.exists(&signature)?;
-    Ok(is_there.then(|| storage.read(&signature, MOST_SIGNATURE_BYTES)).transpose()?)
-}
-
 /// Returns the location of a file's signature, which [`signature_path`] returns for a local file.
 pub(crate) fn signature_location(file: &Location) -> Result<Location> {
     Ok(Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?)
-}
-
-/// Returns the path of a file's signature: the path of the file, followed by `.sig`.
-pub(crate) fn signature_path(file: &Path) -> PathBuf {
-    let mut path = file.as_os_str().to_owned();
-    path.push(".");
-    path.push(SIGNATURE_EXTENSION);
-    path.into()
 }

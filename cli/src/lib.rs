@@ -48,6 +48,7 @@ mod schemas;
 #[cfg(any(feature = "build", feature = "check", feature = "lab"))]
 mod shared;
 mod signals;
+mod signers;
 mod wasm_limits;
 mod wav;
 
@@ -164,17 +165,21 @@ pub fn check_usage(
     }
 }
 
-fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+/// Returns the arguments, and the key that must have signed the textures.
+fn parse(
+    arguments: impl IntoIterator<Item = OsString>,
+) -> Result<(Cli, Option<String>), clap::Error> {
     let mut command = command();
     let matches = command.try_get_matches_from_mut(arguments)?;
     located::check_paths(&command, &matches)?;
-    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+    Ok((cli, signers::given(&matches).cloned()))
 }
 
 fn parse_and_run(arguments: Vec<OsString>) -> u8 {
     let began = std::time::Instant::now();
-    let Cli { command, quiet, verbose } = match parse(arguments) {
-        Ok(cli) => cli,
+    let (Cli { command, quiet, verbose }, key) = match parse(arguments) {
+        Ok(parsed) => parsed,
         Err(error) => {
             // A closed standard output or standard error is not an error of the command.
             let _ = error.print();
@@ -182,7 +187,7 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
         }
     };
     progress::set_quiet(quiet);
-    let code = match run_command(command) {
+    let code = match run_command(command, key.as_deref()) {
         Ok(exit) => exit.code(),
         Err(failure) => {
             let lines = failure.to_lines();
@@ -200,12 +205,13 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
 }
 
 /// Downloads the inputs of a command, runs it, and uploads its outputs.
-fn run_command(command: Command) -> Result {
+/// `key` must have signed the textures, if it is given.
+fn run_command(command: Command, key: Option<&str>) -> Result {
     // This also resets the meaning of signals, because an earlier command in this process may have
     // changed it.
     signals::handle()?;
     check_folders()?;
-    located::download()?;
+    located::download(key)?;
     let exit = command.run()?;
     // The command may have called `signals::ask`. From here on nothing checks for signals, so they
     // end the program again.

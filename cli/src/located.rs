@@ -22,9 +22,11 @@ use htex_base::finding::plain;
 use htex_base::storage::{Location, Storage, StorageError};
 use htex_format::Limits;
 use htex_format::library::{Library, LibraryFile, NamePattern, split_address};
+use htex_format::signing::{Signers, read_signature_at, signature_path};
 use tempfile::TempDir;
 
 use crate::failure::{Failure, Result, for_file};
+use crate::signers;
 
 /// An argument for an asset, which must not exceed the maximum size of an asset.
 pub(crate) const ASSET: Argument = Argument::new(Role::Asset);
@@ -43,7 +45,8 @@ pub(crate) const OUTPUT: Argument = Argument::new(Role::Output);
 pub(crate) const LOCAL_OUTPUT: Argument = Argument::new(Role::LocalOutput);
 
 /// The copies of the current run.
-static COPIES: Mutex<Copies> = Mutex::new(Copies { folder: None, files: Vec::new() });
+static COPIES: Mutex<Copies> =
+    Mutex::new(Copies { folder: None, files: Vec::new(), signed: Vec::new() });
 /// The temporary folder. It has its own lock for a signal handler, which may run while the other
 /// lock is held.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -51,6 +54,8 @@ static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
 struct Copies {
     folder: Option<TempDir>,
     files: Vec<LocalCopy>,
+    /// BLAKE3 of the textures whose libraries are signed as the command requires.
+    signed: Vec<[u8; 32]>,
 }
 
 /// A local copy of something that is no local file.
@@ -333,6 +338,7 @@ fn copies() -> MutexGuard<'static, Copies> {
 pub(crate) fn clear() {
     let mut copies = copies();
     copies.files.clear();
+    copies.signed.clear();
     copies.folder = None;
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
 }
@@ -386,6 +392,11 @@ pub(crate) fn is_copy(path: &Path) -> bool {
     copies().files.iter().any(|file| file.local == path)
 }
 
+/// Returns the BLAKE3 of the copied textures whose libraries are signed as the command requires.
+pub(crate) fn signed_textures() -> Vec<[u8; 32]> {
+    copies().signed.clone()
+}
+
 /// Returns the name of a copy's texture in its library; `None` for all other files.
 pub(crate) fn texture_name(path: &Path) -> Option<PathBuf> {
     let copies = copies();
@@ -421,8 +432,10 @@ pub(crate) fn with_uris(text: &str) -> String {
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
 /// Checks that the outputs can be written, as far as this is possible without a network request.
-/// Then makes the copies of the inputs.
-pub(crate) fn download() -> Result<()> {
+/// Then makes the copies of the inputs. If a key must have signed them, refuses the textures of
+/// libraries that it did not sign, and puts the signatures of other files beside their copies, where
+/// the reader of the copies checks them.
+pub(crate) fn download(key: Option<&str>) -> Result<()> {
     let files = copies().files.clone();
     if files.is_empty() {
         return Ok(());
@@ -433,6 +446,7 @@ pub(crate) fn download() -> Result<()> {
     for (location, _) in outputs() {
         storage.check_writable(&location)?;
     }
+    let signers = key.map(signers::signers).transpose()?;
     let mut libraries = HashMap::new();
     for file in files {
         let most_bytes = match file.role {
@@ -443,6 +457,15 @@ pub(crate) fn download() -> Result<()> {
         match &file.origin {
             Origin::File(location) => {
                 storage.download(location, create(&file.local)?, most_bytes)?;
+                let signature = signers.as_ref().map(|_| read_signature_at(&storage, location));
+                if let Some(signature) = signature.transpose()?.flatten() {
+                    write(&signature_path(&file.local), &signature)?;
+                }
+            }
+            Origin::StandardInput if signers.is_some() && file.role == Role::Asset => {
+                return Err(Failure::other(
+                    "-: standard input has no signature; name a file that has its .sig beside it",
+                ));
             }
             Origin::StandardInput => {
                 // With the additional byte, the reader of assets refuses the file.
@@ -452,10 +475,12 @@ pub(crate) fn download() -> Result<()> {
             Origin::Texture { library, name } => {
                 let opened = match libraries.remove(library) {
                     Some(opened) => opened,
-                    None => Library::open_located(&storage, library)
-                        .map_err(for_file(library.to_string().as_ref()))?,
+                    None => open_library(&storage, library, signers.as_ref())?,
                 };
-                take_out(&opened, library, name, &file)?;
+                let taken = take_out(&opened, library, name, &file)?;
+                if signers.is_some() {
+                    copies().signed.extend(taken);
+                }
                 libraries.insert(library.clone(), opened);
             }
         }
@@ -463,22 +488,34 @@ pub(crate) fn download() -> Result<()> {
     Ok(())
 }
 
-/// Copies the textures of a library that an argument names.
+/// Opens a library, if the signers signed it.
+fn open_library(
+    storage: &Storage,
+    location: &Location,
+    signers: Option<&Signers>,
+) -> Result<Library<LibraryFile>> {
+    let library = Library::open_located(storage, location)
+        .map_err(for_file(location.to_string().as_ref()))?;
+    if let Some(signers) = signers {
+        signers::check_library(storage, location, &library, signers)?;
+    }
+    Ok(library)
+}
+
+/// Copies the textures of a library that an argument names. Returns their BLAKE3.
 fn take_out(
     opened: &Library<LibraryFile>,
     library: &Location,
     name: &NamePattern,
     file: &LocalCopy,
-) -> Result<()> {
+) -> Result<Vec<[u8; 32]>> {
     let shown = PathBuf::from(library.to_string());
-    let write = |path: &Path, bytes: &[u8]| {
-        create(path).and_then(|mut file| Ok(file.write_all(bytes).writing(path)?))
-    };
     if !name.is_pattern() {
-        let bytes = opened.get(name.as_str()).map_err(for_file(&shown))?;
-        return write(&file.local, &bytes);
+        let entry = opened.needed(name.as_str()).map_err(for_file(&shown))?;
+        write(&file.local, &opened.read(&entry).map_err(for_file(&shown))?)?;
+        return Ok(vec![entry.blake3]);
     }
-    let (mut found, mut ratio) = (Vec::new(), opened.ratio());
+    let (mut found, mut taken, mut ratio) = (Vec::new(), Vec::new(), opened.ratio());
     for entry in opened.entries() {
         let entry = entry.map_err(for_file(&shown))?;
         if !name.matches(&entry.name) {
@@ -489,6 +526,7 @@ fn take_out(
         let folder = local.parent().unwrap_or(&file.local);
         create_folder(folder).writing(folder)?;
         write(&local, &opened.read(&entry).map_err(for_file(&shown))?)?;
+        taken.push(entry.blake3);
         let name = entry.name.parse().map_err(Failure::Other)?;
         found.push(LocalCopy {
             origin: Origin::Texture { library: library.clone(), name },
@@ -504,7 +542,12 @@ fn take_out(
         )));
     }
     copies().files.extend(found);
-    Ok(())
+    Ok(taken)
+}
+
+/// Writes the file of a copy.
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    Ok(create(path)?.write_all(bytes).writing(path)?)
 }
 
 #[allow(clippy::disallowed_methods, reason = "inside a new temporary folder of this user")]

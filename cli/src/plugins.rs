@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_format::Asset;
+use htex_format::signing::Signers;
 use htex_host::{LoadedModel, Origin, Registry, Search, WasmLimits};
 
 use crate::failure::{Result, for_file};
 use crate::output::warn;
+use crate::signers::SignerArgs;
 use crate::wasm_limits::WasmLimit;
 
 /// Options that set where htex searches for models.
@@ -104,6 +107,9 @@ pub(crate) struct PlayerArgs {
     /// Do not run models that are embedded in the asset. By default, they run in a sandbox
     #[arg(long)]
     no_embedded_plugins: bool,
+
+    #[command(flatten)]
+    signers: SignerArgs,
 }
 
 impl PlayerArgs {
@@ -117,9 +123,23 @@ impl PlayerArgs {
         !self.no_embedded_plugins
     }
 
+    /// Returns who must have signed each texture; `None` if signatures are not required.
+    pub(crate) fn signers(&self) -> Result<Option<Signers>> {
+        self.signers.signers()
+    }
+
+    /// Reads an asset, if it is signed as required.
+    pub(crate) fn read(&self, path: &Path) -> Result<Asset> {
+        let read = match self.signers()? {
+            None => Asset::open(path),
+            Some(signers) => Asset::open_signed(path, &signers),
+        };
+        read.map_err(for_file(path))
+    }
+
     pub(crate) fn open(&self, path: &Path) -> Result<htex::Texture> {
         let registry = self.plugins.registry()?;
-        let data = htex_format::Asset::open(path).map_err(for_file(path))?;
+        let data = self.read(path)?;
         let asset = htex::Texture::with_registry(data, registry);
         if self.no_embedded_plugins {
             return Ok(asset);

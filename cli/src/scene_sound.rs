@@ -44,7 +44,7 @@ impl Scene {
         let loader = Loader::builtin(player)?;
         let told = RefCell::default();
         // The quantity is a setting of the device, so it is read before the scene is loaded.
-        let ready = load(&loader, file, &numbers(quantity(file), None), &told)?;
+        let ready = load(&loader, file, &numbers(quantity(file, player), None), &told)?;
         if ready.scene.file.motion == Motion::Live {
             let file = shown(file);
             return Err(Failure::Other(format!(
@@ -112,11 +112,11 @@ pub(crate) fn is_scene(file: &Path) -> bool {
 
 /// Returns the quantity of the first texture. Returns `None` if the scene or the texture cannot be
 /// read; loading the scene then reports the error.
-fn quantity(scene: &Path) -> Option<Quantity> {
+fn quantity(scene: &Path, player: &PlayerArgs) -> Option<Quantity> {
     let bytes = read_regular(scene, MOST_BYTES).ok()?;
     let read = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
     let first = scene.parent()?.join(&read.surfaces.first()?.asset);
-    Some(htex_format::Asset::open(&first).ok()?.manifest.quantity)
+    Some(player.read(&first).ok()?.manifest.quantity)
 }
 
 /// Returns the choice of a device that takes plain numbers and is not opened.

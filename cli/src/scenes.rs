@@ -7,9 +7,10 @@ use clap::Args;
 use htex_base::finding::Notice;
 use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
 use htex_format::Rights;
+use htex_format::signing::Signers;
 use htex_host::{Registry, Search, WasmLimits};
 use htex_scene::file::{Constant, Motion};
-use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
+use htex_scene::{Costs, DeviceOverride, Plan, Scene, SceneError, Surroundings};
 use serde_json::Value;
 
 use crate::devices::{DeviceArgs, SettingArgs};
@@ -102,6 +103,14 @@ impl SceneArgs {
         self.player.registry()
     }
 
+    /// Returns the motion of an asset's default condition.
+    pub(crate) fn default_motion(&self, file: &Path) -> Result<Motion> {
+        let asset = htex::Texture::new(self.player.read(file)?);
+        let representation = asset.representation(None).map_err(for_file(file))?;
+        let htex::Motion { speed_mm_s, force_n, .. } = representation.motion(None, None);
+        Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
+    }
+
     pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready> {
         if located::is_copy(file) {
             return Err(Failure::Usage(format!(
@@ -137,6 +146,7 @@ impl SceneArgs {
             models: self.models()?,
             devices: self.devices.devices()?,
             embedded: self.player.embedded(),
+            signers: self.player.signers()?,
         })
     }
 
@@ -153,6 +163,7 @@ impl SceneArgs {
             models: &registry,
             embedded: is_allowed,
             devices: Some(&DeviceArgs::default().devices_quietly()?),
+            signers: None,
         };
         htex_scene::validate(file, &around).map_err(for_file(file))
     }
@@ -173,6 +184,7 @@ pub(crate) struct Loader {
     models: Registry,
     devices: Devices,
     embedded: bool,
+    signers: Option<Signers>,
 }
 
 impl Loader {
@@ -184,11 +196,17 @@ impl Loader {
             models: player.registry()?,
             devices: Devices::new(htex_device_builtin::devices()),
             embedded: player.embedded(),
+            signers: player.signers()?,
         })
     }
 
     pub(crate) fn around(&self) -> Surroundings<'_> {
-        Surroundings { models: &self.models, embedded: self.embedded, devices: Some(&self.devices) }
+        Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: Some(&self.devices),
+            signers: self.signers.as_ref(),
+        }
     }
 
     /// Loads a scene and prints its warnings that are not yet in `told`. Adds them to `told`.
@@ -198,7 +216,11 @@ impl Loader {
         told: &mut BTreeSet<String>,
         load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
     ) -> Result<Ready> {
-        let scene = load(&self.around()).map_err(for_file(file))?;
+        let scene = load(&self.around()).map_err(|error| match error {
+            // A scene that was made from an asset has its name in the error.
+            SceneError::Unsigned { ref asset, .. } if asset == file => error.into(),
+            error => Failure::from(error).in_file(file),
+        })?;
         let new = scene.notes.iter().filter(|note| told.insert(note.to_string()));
         let new: Vec<Notice> = new.map(|note| Notice::new(note.to_string(), note.hint)).collect();
         warn(&new);
@@ -263,14 +285,6 @@ fn capabilities(
 /// Whether a file is an asset, judged by its name. Otherwise it is a scene.
 pub(crate) fn is_asset(file: &Path) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("htex"))
-}
-
-/// Returns the motion of an asset's default condition.
-pub(crate) fn default_motion(file: &Path) -> Result<Motion> {
-    let asset = htex::Texture::new(htex_format::Asset::open(file).map_err(for_file(file))?);
-    let representation = asset.representation(None).map_err(for_file(file))?;
-    let htex::Motion { speed_mm_s, force_n, .. } = representation.motion(None, None);
-    Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }
 
 /// Returns the file in which measured costs are stored.

@@ -14,7 +14,7 @@ use crate::located;
 use crate::motions::Motions;
 use crate::output::{note, print};
 use crate::playing::{Output, limited_text};
-use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, default_motion, is_asset};
+use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, is_asset};
 use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device
@@ -144,7 +144,7 @@ pub(crate) fn open(
     if !is_asset(file) {
         return with.open(file, &device);
     }
-    let motion = if live { Motion::Live } else { default_motion(file)? };
+    let motion = if live { Motion::Live } else { with.default_motion(file)? };
     with.of_asset(file, motion, None, &device)
 }
 

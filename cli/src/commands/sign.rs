@@ -87,7 +87,7 @@ fn content_of(file: &Path) -> Result<SignedContent> {
     opened.reading(file)?;
     if start == MAGIC {
         let library = Library::open(file).map_err(for_file(file))?;
-        return Ok(SignedContent::library(library.index()));
+        return SignedContent::library(&library).map_err(for_file(file));
     }
     if start.starts_with(b"PK\x03\x04") {
         return SignedContent::asset(&read_asset(file)?).map_err(for_file(file));

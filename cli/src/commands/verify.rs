@@ -6,7 +6,7 @@ use clap::Args;
 use htex_base::finding::plain;
 use htex_base::storage::{Location, Storage};
 use htex_format::Limits;
-use htex_format::library::{Library, split_address};
+use htex_format::library::{Library, LibraryFile, split_address};
 use htex_format::signing::{
     FileSignature, PublicKey, SIGNATURE_EXTENSION, SignedContent, SignedKind,
 };
@@ -88,8 +88,9 @@ fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
         version: None,
         signer: None,
     };
+    let mut library = None;
     let signer = signer_at(&location, |signature| {
-        let content = content(&storage, &location, signature)?;
+        let content = content(&storage, &location, signature, &mut library)?;
         found.kind = Some(content.kind);
         found.name = Some(content.name.clone());
         found.version = Some(content.version.clone()).filter(|version| !version.is_empty());
@@ -102,10 +103,8 @@ fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
         Some(key) => signer.public_key() == Some(key) && !matches!(signer, Signer::Revoked { .. }),
         None => signer.is_trusted(),
     };
-    if let (true, Some(texture)) = (found.verified, texture) {
+    if let (true, Some(texture), Some(library)) = (found.verified, texture, library) {
         // The signature covers the index, and the index contains the hash of the texture.
-        let library =
-            Library::open_located(&storage, &location).map_err(for_file(text.as_ref()))?;
         library.get(texture).map_err(for_file(text.as_ref()))?;
         found.name = Some(format!("{}#{texture}", library.name()));
     }
@@ -113,11 +112,13 @@ fn verify(argument: &str, wanted: Option<PublicKey>) -> Result<Verified> {
     Ok(found)
 }
 
-/// Returns the content that the signature of a file must state.
+/// Returns the content that the signature of a file must state. Keeps the library whose index was
+/// checked.
 fn content(
     storage: &Storage,
     location: &Location,
     signature: &FileSignature,
+    opened: &mut Option<Library<LibraryFile>>,
 ) -> Result<SignedContent> {
     let shown = location.to_string();
     let in_file = Path::new(&shown);
@@ -130,7 +131,8 @@ fn content(
         // plugin is loaded.
         (SignedKind::Library, _) => {
             let library = Library::open_located(storage, location).map_err(for_file(in_file))?;
-            Ok(SignedContent::library(library.index()))
+            let library = opened.insert(library);
+            SignedContent::library(library).map_err(for_file(in_file))
         }
         (SignedKind::Asset, _) => {
             let bytes = storage.read(location, Limits::default().file_bytes)?;

@@ -59,6 +59,8 @@ mod response;
 mod rigs;
 mod scene;
 mod shell;
+#[cfg(all(feature = "build", feature = "cloud"))]
+mod signed_textures;
 #[cfg(feature = "cloud")]
 mod storage;
 #[cfg(all(unix, feature = "build"))]

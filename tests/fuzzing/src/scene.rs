@@ -40,7 +40,7 @@ pub(crate) fn around() -> Surroundings<'static> {
     static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
     let (models, devices) =
         AROUND.get_or_init(|| (Registry::builtin(), Devices::new(vec![Arc::new(FileAdapter)])));
-    Surroundings { models, embedded: false, devices: Some(devices) }
+    Surroundings { models, embedded: false, devices: Some(devices), signers: None }
 }
 
 /// The folder of the assets that the scenes name.

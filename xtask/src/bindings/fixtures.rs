@@ -42,7 +42,7 @@ const COPIES: usize = 999;
 ///   with an embedded model (`bursts.htex`);
 /// - the samples of these assets at 48 kHz, the spectrum of Bands, and the command's output about
 ///   the asset;
-/// - a library (`many.htexlib`) and its list;
+/// - a library (`many.htexlib`) and its list, and signatures of the asset and the library;
 /// - scenes with their samples and plans;
 /// - the models as modules, and a module that does not return;
 /// - files of other haptic formats, with the textures imported from them, and files exported from
@@ -119,6 +119,8 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         &[&["lib", "pack", "many.htexlib", "--name", "Many", "--unlicensed"][..], &textures]
             .concat(),
     )?;
+    fs_err::write(folder.join("signer.key"), [7; 32])?;
+    htex(&["sign", "vinyl.htex", "many.htexlib", "--key", "signer.key"])?;
     printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
 }
 

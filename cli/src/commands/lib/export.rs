@@ -16,6 +16,7 @@ use super::{LibraryArg, check_free};
 use crate::failure::{Exit, Failure, Result, for_file};
 use crate::output::{print, print_json, shown};
 use crate::progress::bar;
+use crate::signers::SignerArgs;
 
 /// Name of the table.
 const TABLE: &str = "exported.csv";
@@ -62,6 +63,9 @@ pub(crate) struct ExportAll {
     /// Overwrite existing files
     #[arg(long)]
     force: bool,
+
+    #[command(flatten)]
+    signers: SignerArgs,
 
     /// Print JSON: a list with an object for each file
     #[arg(long)]
@@ -122,7 +126,7 @@ struct Row {
 impl ExportAll {
     pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
-        let library = self.library.open()?;
+        let library = self.library.open_signed(&self.signers)?;
         let profile = self.profile.as_deref().map(Profile::find).transpose()?;
         let bar = bar(library.len());
         let (mut batch, mut rows) = (Batch::default(), Vec::new());

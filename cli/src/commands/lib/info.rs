@@ -44,8 +44,8 @@ impl Info {
         let file = self.library.shown();
         let _waiting = self.library.waiting()?;
         let library = self.library.open()?;
-        let content = SignedContent::library(library.index());
-        let signer = signer_at(&self.library.0, |_| Ok(content))?;
+        let content = |_: &_| SignedContent::library(&library).map_err(for_file(&file));
+        let signer = signer_at(&self.library.0, content)?;
         let summary = library.summary().map_err(for_file(&file))?;
         show(&LibraryInfo { file: file.display().to_string(), summary, signer }, self.json)
     }

@@ -31,6 +31,8 @@ use super::subcommands;
 use crate::failure::{Failure, Result, for_file};
 use crate::output::shown;
 use crate::progress::Waiting;
+#[cfg(feature = "build")]
+use crate::signers::{SignerArgs, check_library};
 
 /// Pack, change, list and verify libraries
 ///
@@ -107,6 +109,16 @@ impl LibraryArg {
     fn open(&self) -> Result<Library<LibraryFile>> {
         let storage = Storage::from_environment()?;
         Library::open_located(&storage, &self.0).map_err(for_file(&self.shown()))
+    }
+
+    /// Opens the library, if it is signed as required.
+    #[cfg(feature = "build")]
+    fn open_signed(&self, signers: &SignerArgs) -> Result<Library<LibraryFile>> {
+        let library = self.open()?;
+        if let Some(signers) = signers.signers()? {
+            check_library(&Storage::from_environment()?, &self.0, &library, &signers)?;
+        }
+        Ok(library)
     }
 
     /// If the library is not on this machine, says after two seconds that the command waits for it,

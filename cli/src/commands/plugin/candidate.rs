@@ -7,14 +7,14 @@ use htex_base::finding::plain;
 use htex_base::native::description::{read_descriptor, section};
 use htex_base::storage::{Location, Storage};
 use htex_build::registry::PluginKind;
-use htex_format::signing::{FileSignature, SignedContent, SignedKind};
+use htex_format::signing::{FileSignature, SignedContent, SignedKind, read_signature_at};
 use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::failure::{Failure, Result};
 use crate::installed::Identity;
 use crate::invocation;
-use crate::keys::{KeyRing, Signer, signature_beside};
+use crate::keys::{KeyRing, Signer};
 use crate::plugin_registry::MOST_PLUGIN_BYTES;
 
 /// A plugin that may be installed, in a folder of its own.
@@ -52,7 +52,7 @@ pub(super) fn candidate_at(text: &str) -> Result<Candidate> {
     }
     let storage = Storage::from_environment()?;
     let bytes = storage.read(&location, MOST_PLUGIN_BYTES)?;
-    let signature = signature_beside(&storage, &location)?;
+    let signature = read_signature_at(&storage, &location)?;
     Candidate::new(bytes, signature, text)
 }
 

@@ -105,7 +105,7 @@ impl Run {
         // This path stands for the files of the trials. Their names are not known yet.
         let device = self.choice.to_override(Some(&self.output.join("trial.wav")), false)?;
         let loader = self.with.loader()?;
-        check_files(study, &self.study, &loader.around(), &device, &mut findings);
+        check_files(study, &self.study, &loader.around(), &device, &mut findings)?;
         findings.retain(|finding| finding.severity == Severity::Error);
         if findings.is_empty() { Ok(()) } else { Err(cannot_run(&self.study, findings)) }
     }

@@ -47,7 +47,7 @@ impl Validate {
         if let Some(study) = study {
             let rehearsal = self.choice.to_override(None, true)?;
             let loader = self.with.loader()?;
-            check_files(&study, path, &loader.around(), &rehearsal, &mut findings);
+            check_files(&study, path, &loader.around(), &rehearsal, &mut findings)?;
         }
         Ok(Report::new(findings))
     }

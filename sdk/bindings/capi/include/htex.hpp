@@ -243,6 +243,10 @@ struct OpenOptions {
     std::optional<std::string> cache;
     bool embedded = true;
     bool installed = false;
+    /* Public keys, of which one must have signed each texture; none to require no signature. */
+    std::vector<std::string> only_signed_by;
+    /* The contents of the file with the signature, for what has no path. */
+    std::vector<uint8_t> signature;
 
     template <typename Call> htex_status with(Call call) const
     {
@@ -262,6 +266,12 @@ struct OpenOptions {
         options.cache = cache ? cache->c_str() : nullptr;
         options.no_embedded = !embedded;
         options.installed = installed;
+        std::vector<const char *> keys;
+        for (const std::string &key : only_signed_by)
+            keys.push_back(key.c_str());
+        options.only_signed_by = keys.data();
+        options.only_signed_by_len = keys.size();
+        options.signature = {signature.data(), signature.size()};
         return call(&options);
     }
 };

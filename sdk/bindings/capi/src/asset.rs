@@ -65,8 +65,7 @@ pub unsafe extern "C" fn htex_asset_open(
     guarded(|| {
         // SAFETY: the caller passed these pointers.
         let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
-        let data = htex::format::Asset::open(path.as_ref()).map_err(htex::Error::from)?;
-        keep(data, models, out)
+        keep(models.signed.open(path.as_ref())?, models, out)
     })
 }
 
@@ -81,8 +80,7 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     guarded(|| {
         // SAFETY: the caller passed these pointers.
         let (path, models) = unsafe { (crate::pointers::wide_path(path)?, models(options)?) };
-        let data = htex::format::Asset::open(&path).map_err(htex::Error::from)?;
-        keep(data, models, out)
+        keep(models.signed.open(&path)?, models, out)
     })
 }
 
@@ -102,8 +100,7 @@ pub unsafe extern "C" fn htex_asset_open_reader(
         let bytes = reader
             .read_whole()
             .map_err(|error| Failure::new(htex_status::HTEX_STATUS_IO, error))?;
-        let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
-        keep(data, models, out)
+        keep(models.signed.read(&bytes)?, models, out)
     })
 }
 
@@ -119,8 +116,7 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     guarded(|| {
         // SAFETY: the caller passed these pointers.
         let (bytes, models) = unsafe { (slice(bytes, len)?, models(options)?) };
-        let data = htex::format::Asset::from_bytes(bytes).map_err(htex::Error::from)?;
-        keep(data, models, out)
+        keep(models.signed.read(bytes)?, models, out)
     })
 }
 

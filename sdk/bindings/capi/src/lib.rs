@@ -29,6 +29,7 @@ mod pointers;
 mod reader;
 mod scene;
 mod shutdown;
+mod signed;
 mod status;
 mod voice;
 
@@ -88,7 +89,7 @@ pub use voice::{
 
 /// Version of this interface: the major version in the upper 16 bits, the minor version in the
 /// lower 16. 0x00010000 is 1.0. A new minor version only adds functions, fields and values.
-pub const HTEX_API_VERSION: u32 = 0x0001_0001;
+pub const HTEX_API_VERSION: u32 = 0x0001_0002;
 
 /// [any thread] Returns the interface version of the loaded library, in the same format as
 /// HTEX_API_VERSION.

@@ -10,6 +10,7 @@ use htex::{Registry, VoiceOptions};
 use crate::log::{htex_log_level, log};
 use crate::motion::{htex_motion, motion};
 use crate::pointers::{needed_text, slice, text};
+use crate::signed::{Signed, signed};
 use crate::status::{Failure, htex_status};
 
 /// A block of bytes in memory.
@@ -73,6 +74,16 @@ pub struct htex_open_options {
     /// If not 0, the library also loads installed models: from the folders in the environment
     /// variable HTEX_PLUGIN_PATH, and from the user's plugin folder.
     pub installed: u32,
+    /// Public keys, each in 64 hexadecimal digits. If there are any, each texture must be signed by
+    /// one of them: an asset that is opened, the library of a texture, and each texture of a scene.
+    /// The signature of a file is in PATH.sig beside it, and in a scene in memory the file NAME.sig.
+    /// Otherwise the call returns HTEX_STATUS_NOT_SIGNED.
+    pub only_signed_by: *const *const c_char,
+    /// Number of `only_signed_by`. 0 accepts textures without a signature.
+    pub only_signed_by_len: usize,
+    /// The contents of the file with the signature, for what has no PATH: an asset or a library in
+    /// memory or behind a reader. The library uses the bytes only during the call.
+    pub signature: htex_bytes,
 }
 
 /// Options for making a voice. Set `size` to sizeof(htex_voice_options), and all other fields to
@@ -163,10 +174,11 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     Ok(options)
 }
 
-/// The models of a call, and whether embedded models may run.
+/// The models of a call, whether embedded models may run, and who must have signed what is opened.
 pub(crate) struct Models {
     pub(crate) registry: Registry,
     pub(crate) embedded: bool,
+    pub(crate) signed: Signed,
 }
 
 /// # Safety
@@ -182,6 +194,9 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         cache: std::ptr::null(),
         no_embedded: 0,
         installed: 0,
+        only_signed_by: std::ptr::null(),
+        only_signed_by_len: 0,
+        signature: htex_bytes { data: std::ptr::null(), len: 0 },
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
@@ -195,6 +210,8 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         Some(folder) => WasmCache::Dir(folder.into()),
         None => WasmCache::Off,
     };
+    // SAFETY: as here.
+    let signed = unsafe { signed(&options) }?;
     let engine = engine(options.engine, htex::model::RUNS_WASM)?;
     let installed = options.installed != 0;
     let limits = WasmLimits::default().with_engine(engine).with_cache(cache);
@@ -215,7 +232,8 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     for note in registry.notes() {
         log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
     }
-    Ok(Models { registry, embedded: options.no_embedded == 0 && engine != WasmEngine::Off })
+    let embedded = options.no_embedded == 0 && engine != WasmEngine::Off;
+    Ok(Models { registry, embedded, signed })
 }
 
 /// Returns the engine for a number. If this build lacks the engine, this fails here rather than

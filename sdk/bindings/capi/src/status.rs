@@ -43,6 +43,8 @@ pub enum htex_status {
     HTEX_STATUS_ABSENT = 15,
     /// The device or its driver is missing, is in use, or failed. The device is then at rest.
     HTEX_STATUS_DEVICE = 16,
+    /// The file is not signed by any of the keys in `only_signed_by` of htex_open_options.
+    HTEX_STATUS_NOT_SIGNED = 17,
 }
 
 /// The error of a call: a status and a text.
@@ -88,6 +90,7 @@ impl From<htex::library::LibraryError> for Failure {
         let status = match &error {
             LibraryError::Open { .. } | LibraryError::Read { .. } => htex_status::HTEX_STATUS_IO,
             LibraryError::Absent { .. } => htex_status::HTEX_STATUS_ABSENT,
+            LibraryError::Signature(_) => htex_status::HTEX_STATUS_NOT_SIGNED,
             _ => htex_status::HTEX_STATUS_INVALID_LIBRARY,
         };
         Self::new(status, error)
@@ -104,6 +107,7 @@ impl From<htex::scene::SceneError> for Failure {
             SceneErrorKind::Motion => HTEX_STATUS_INVALID_MOTION,
             SceneErrorKind::Model => HTEX_STATUS_MODEL,
             SceneErrorKind::NoModel => HTEX_STATUS_NO_MODEL,
+            SceneErrorKind::Signature => HTEX_STATUS_NOT_SIGNED,
             _ => HTEX_STATUS_INVALID_SCENE,
         };
         let text = Text::Scene(error);
@@ -119,6 +123,7 @@ impl From<htex::Error> for Failure {
             ErrorKind::Io => HTEX_STATUS_IO,
             ErrorKind::InvalidAsset => HTEX_STATUS_INVALID_ASSET,
             ErrorKind::Library => HTEX_STATUS_INVALID_LIBRARY,
+            ErrorKind::Signature => HTEX_STATUS_NOT_SIGNED,
             ErrorKind::NoRepresentation => HTEX_STATUS_NO_REPRESENTATION,
             ErrorKind::Model => HTEX_STATUS_MODEL,
             ErrorKind::Motion => HTEX_STATUS_INVALID_MOTION,
@@ -206,6 +211,7 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
         14 => c"the library of textures is invalid",
         15 => c"the library has no texture of this name",
         16 => c"the device or its driver is missing, in use, or failed",
+        17 => c"the file is not signed by an accepted key",
         _ => c"unknown status",
     };
     text.as_ptr()

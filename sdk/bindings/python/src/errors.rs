@@ -25,6 +25,7 @@ import_exception!(htex._errors, MotionError);
 import_exception!(htex._errors, OptionError);
 import_exception!(htex._errors, RecordingError);
 import_exception!(htex._errors, SceneError);
+import_exception!(htex._errors, SignatureError);
 
 /// An error that becomes an exception of this package, or an `OSError` if the operating system
 /// reported it.
@@ -62,6 +63,7 @@ impl IntoPyErr for ReadError {
     fn into_py_err(self) -> PyErr {
         match self {
             Self::Io { path, error } => of_file(&path, &error),
+            Self::Signature(_) => SignatureError::new_err(self.to_string()),
             other => AssetError::new_err(other.to_string()),
         }
     }
@@ -143,6 +145,7 @@ impl IntoPyErr for PlayError {
         match self {
             Self::Io { path, error } => of_file(&path, &error),
             Self::Motion { .. } => MotionError::new_err(self.to_string()),
+            Self::Unsigned { .. } => SignatureError::new_err(self.to_string()),
             other => SceneError::new_err(other.to_string()),
         }
     }

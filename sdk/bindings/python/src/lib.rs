@@ -23,6 +23,7 @@ mod python_voice;
 mod reading;
 mod response;
 mod scene;
+mod signed;
 mod simulate;
 mod texture;
 mod tradeoff;

@@ -1,6 +1,7 @@
 //! Libraries: one file with thousands of textures.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use htex::format::Asset;
@@ -16,8 +17,9 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-use crate::errors::{IntoPyErr, LibraryError as Raised, of_file, option, raised};
+use crate::errors::{IntoPyErr, LibraryError as Raised, SignatureError, of_file, option, raised};
 use crate::python::{data, parsed};
+use crate::signed::{Keys, Signed};
 use crate::texture::{Source, Texture};
 
 /// A library: a single file with thousands of textures. A texture is read only when it is
@@ -31,7 +33,7 @@ pub(crate) struct Library {
 }
 
 /// Where the bytes of a library come from: a local or remote file, or memory.
-enum Origin {
+pub(crate) enum Origin {
     File(LibraryFile),
     Memory(Vec<u8>),
 }
@@ -52,6 +54,19 @@ impl Bytes for Origin {
     }
 }
 
+/// Opens a library at a path or a URI, if it is signed as required.
+pub(crate) fn open_file(path: &OsStr, signed: &Signed) -> PyResult<htex::library::Library<Origin>> {
+    let opened = || {
+        let (storage, location) = (Storage::from_environment()?, Location::parse(path)?);
+        let file = Origin::File(LibraryFile::open(&storage, &location)?);
+        let library = htex::library::Library::open_source(file)?;
+        Ok::<_, LibraryError>((storage, location, library))
+    };
+    let (storage, location, library) = opened().map_err(raised)?;
+    signed.check(&library, Some((&storage, &location)))?;
+    Ok(library)
+}
+
 impl IntoPyErr for LibraryError {
     fn into_py_err(self) -> PyErr {
         match self {
@@ -60,6 +75,7 @@ impl IntoPyErr for LibraryError {
                 std::io::Error::new(error.kind(), self.to_string()).into()
             }
             Self::Absent { name, .. } => PyKeyError::new_err(name),
+            Self::Signature(_) => SignatureError::new_err(self.to_string()),
             Self::Asset { error, .. } => error.into_py_err(),
             other => Raised::new_err(other.to_string()),
         }
@@ -75,26 +91,29 @@ impl IntoPyErr for BuildError {
 #[pymethods]
 impl Library {
     #[new]
-    #[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
+    #[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false, only_signed_by=None, signature=None))]
+    #[allow(clippy::too_many_arguments, reason = "the keywords of a Python function")]
     fn open(
         py: Python<'_>,
         source: &Bound<'_, PyAny>,
         plugins: Vec<PathBuf>,
         embedded: bool,
         installed: bool,
+        only_signed_by: Option<Keys>,
+        signature: Option<Vec<u8>>,
     ) -> PyResult<Self> {
+        let signed = Signed::new(only_signed_by, signature)?;
         let source = Source::from_python(source)?;
-        let opened = py.detach(|| {
-            let origin = match source {
-                Source::File(path) => {
-                    let location = Location::parse(path.as_os_str())?;
-                    Origin::File(LibraryFile::open(&Storage::from_environment()?, &location)?)
-                }
-                Source::Bytes(bytes) => Origin::Memory(bytes),
-            };
-            htex::library::Library::open_source(origin)
-        });
-        Ok(Self { library: opened.map_err(raised)?, plugins, embedded, installed })
+        let library = py.detach(|| match source {
+            Source::File(path) => open_file(path.as_os_str(), &signed),
+            Source::Bytes(bytes) => {
+                let opened = htex::library::Library::open_source(Origin::Memory(bytes));
+                let library = opened.map_err(raised)?;
+                signed.check(&library, None)?;
+                Ok(library)
+            }
+        })?;
+        Ok(Self { library, plugins, embedded, installed })
     }
 
     /// Name of the library; may be empty.

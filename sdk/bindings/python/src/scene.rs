@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use htex::format::signing::Signers;
 use htex::model::{Registry, folders};
 use htex_device::{Capabilities, Devices};
 use htex_scene::file::Motion;
@@ -15,6 +16,7 @@ use crate::errors::{MotionError, SceneError, option, raised};
 use crate::models::registry;
 use crate::path::{Series, count};
 use crate::python::{from_json, zeros};
+use crate::signed::{Keys, Signed};
 
 /// A scene: surfaces, a motion of the finger, and the device for which samples are made. The device
 /// itself is not opened.
@@ -23,6 +25,7 @@ pub(crate) struct Scene {
     file: PathBuf,
     models: Registry,
     embedded: bool,
+    signers: Option<Signers>,
     devices: Devices,
     device: DeviceOverride,
     loaded: htex_scene::Scene,
@@ -33,7 +36,7 @@ pub(crate) struct Scene {
 impl Scene {
     #[new]
     #[pyo3(signature = (path, *, plugins=Vec::new(), embedded=true, installed=false, device=None, profile=None,
-                        settings=BTreeMap::new(), quantity_gain=None))]
+                        settings=BTreeMap::new(), quantity_gain=None, only_signed_by=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -45,7 +48,9 @@ impl Scene {
         profile: Option<String>,
         settings: BTreeMap<String, Bound<'_, PyAny>>,
         quantity_gain: Option<f64>,
+        only_signed_by: Option<Keys>,
     ) -> PyResult<Self> {
+        let signers = Signed::new(only_signed_by, None)?.signers;
         let mut texts = BTreeMap::new();
         for (name, value) in settings {
             texts.insert(name, value.str()?.to_string());
@@ -61,11 +66,16 @@ impl Scene {
         py.detach(|| {
             let models = registry(&plugins, installed)?;
             let devices = devices(installed).map_err(raised)?;
-            let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
+            let around = Surroundings {
+                models: &models,
+                embedded,
+                devices: Some(&devices),
+                signers: signers.as_ref(),
+            };
             let loaded = htex_scene::Scene::open_with(&path, &around, &device).map_err(raised)?;
             let known = devices.find_output(&loaded.file.device.adapter).map_err(raised)?;
             let able = known.adapter.capabilities(&loaded.settings).map_err(raised)?;
-            Ok(Self { file: path, models, embedded, device, loaded, able, devices })
+            Ok(Self { file: path, models, embedded, signers, device, loaded, able, devices })
         })
     }
 
@@ -179,6 +189,7 @@ impl Scene {
             models: &self.models,
             embedded: self.embedded,
             devices: Some(&self.devices),
+            signers: self.signers.as_ref(),
         };
         let device = DeviceOverride { live: true, ..self.device.clone() };
         // Loads the scene again, because some device settings have another default for a live

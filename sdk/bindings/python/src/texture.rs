@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use htex::format::{Asset, write_file};
-use htex::library::storage::{Location, Storage};
-use htex::library::{Library, LibraryError, split_address};
+use htex::library::split_address;
 use htex::play::{Effects, Parameter, Synthesis};
 use htex::{Motion, Representation, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
@@ -13,9 +12,11 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 
 use crate::errors::{of_file, option, raised};
+use crate::library::open_file;
 use crate::models::registry;
 use crate::path::located;
 use crate::python::{data, from_json, spectrum};
+use crate::signed::{Keys, Signed};
 use crate::voice::Voice;
 
 /// A texture: an open asset (a .htex file), and the models that play it.
@@ -30,33 +31,32 @@ pub(crate) struct Texture {
 /// Opens a texture from a path, bytes, or an object with the method `read`. A texture of a library
 /// is `cloth.htexlib#woven/cotton`, with a path or a URI of the library.
 #[pyfunction]
-#[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
+#[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false, only_signed_by=None, signature=None))]
 pub(crate) fn open(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
     plugins: Vec<PathBuf>,
     embedded: bool,
     installed: bool,
+    only_signed_by: Option<Keys>,
+    signature: Option<Vec<u8>>,
 ) -> PyResult<Texture> {
+    let signed = Signed::new(only_signed_by, signature)?;
     let opened = Source::from_python(source)?;
     py.detach(|| {
         let data = match &opened {
             Source::File(path) => match path.to_str().and_then(split_address) {
                 Some((library, name)) => {
-                    Asset::from_bytes(&in_library(library, name).map_err(raised)?)
+                    let library = open_file(library.as_ref(), &signed)?;
+                    let bytes = library.get(name).map_err(raised)?;
+                    Asset::from_bytes(&bytes).map_err(raised)?
                 }
-                None => Asset::open(path),
+                None => signed.open(path)?,
             },
-            Source::Bytes(bytes) => Asset::from_bytes(bytes),
+            Source::Bytes(bytes) => signed.read(bytes)?,
         };
-        Texture::new(data.map_err(raised)?, plugins, embedded, installed)
+        Texture::new(data, plugins, embedded, installed)
     })
-}
-
-/// Reads a texture of a library.
-fn in_library(library: &str, name: &str) -> Result<Vec<u8>, LibraryError> {
-    let location = Location::parse(library.as_ref())?;
-    Library::open_located(&Storage::from_environment()?, &location)?.get(name)
 }
 
 /// A file, or the bytes of a file.

@@ -176,3 +176,45 @@ def test_two_libraries_are_compared(place: pathlib.Path, library: htex.Library, 
     assert (back.removed, back.added) == ([], ["woven/b"])
     same = library.diff(library)
     assert (same.removed, same.added, same.renamed, same.changed) == ([], [], [], [])
+
+
+def test_only_what_a_key_signed_is_opened(place: pathlib.Path, library: htex.Library, tmp_path: pathlib.Path) -> None:
+    secret = tmp_path / "signer.key"
+    secret.write_bytes(bytes([7] * 32))
+    for name, bytes_ in {"cloth.htex": library.to_bytes("Felt"), "three.htexlib": (place / "three.htexlib").read_bytes()}.items():
+        (tmp_path / name).write_bytes(bytes_)
+        command("sign", name, "--key", secret, cwd=tmp_path)
+    cloth, three = tmp_path / "cloth.htex", tmp_path / "three.htexlib"
+    signatures = [path.with_name(path.name + ".sig").read_bytes() for path in (cloth, three)]
+    key, other = json.loads(signatures[0])["public_key"], "00474ae0c6af07224d0a4250b8a3c82cc7c6e1a9e0e27bce347f01a6bd229caa"
+    scene = tmp_path / "one.scene.json"
+    motion = {"constant": {"speed_mm_s": 80, "force_n": 0.4}}
+    surfaces = [{"asset": "cloth.htex"}, {"asset": "three.htexlib#Felt"}]
+    scene.write_text(json.dumps({"htex_scene": "1.0", "surfaces": surfaces, "motion": motion, "duration_s": 0.1}))
+    opens = [
+        lambda keys: htex.open(cloth, only_signed_by=keys),
+        lambda keys: htex.open(f"{three}#Felt", only_signed_by=keys),
+        lambda keys: htex.open(cloth.read_bytes(), only_signed_by=keys, signature=signatures[0]),
+        lambda keys: htex.Library(three, only_signed_by=keys)["Felt"],
+        lambda keys: htex.Library(three.read_bytes(), only_signed_by=keys, signature=signatures[1])["Felt"],
+        lambda keys: htex.Scene(scene, only_signed_by=keys),
+    ]
+    for opened in opens:
+        opened(key)
+        opened([other, key])
+        with pytest.raises(htex.SignatureError, match="another key"):
+            opened(other)
+        with pytest.raises(htex.OptionError, match="only_signed_by"):
+            opened([])
+        with pytest.raises(htex.OptionError, match="64 hexadecimal digits"):
+            opened("alice")
+    with pytest.raises(htex.SignatureError, match="no signature"):
+        htex.open(cloth.read_bytes(), only_signed_by=key)
+    with pytest.raises(htex.OptionError, match="only_signed_by"):
+        htex.open(cloth.read_bytes(), signature=signatures[0])
+    (tmp_path / "cloth.htex").write_bytes(library.to_bytes("woven/b"))
+    with pytest.raises(htex.SignatureError, match="changed"):
+        htex.open(cloth, only_signed_by=key)
+    assert htex.Scene(scene).rate_hz > 0
+    with pytest.raises(htex.SignatureError, match=r"cloth\.htex.*changed"):
+        htex.Scene(scene, only_signed_by=key)

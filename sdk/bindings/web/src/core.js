@@ -25,6 +25,7 @@ const STATUS = [
   "invalid-library",
   "absent",
   "device",
+  "not-signed",
 ];
 
 /** An error of the library; `code` is the kind, such as "invalid-asset". */
@@ -37,7 +38,7 @@ export class HtexError extends Error {
 }
 
 /** Sizes of the structs htex_open_options, htex_voice_options, htex_bytes and htex_envelope. */
-const OPEN_OPTIONS = 36;
+const OPEN_OPTIONS = 52;
 const VOICE_OPTIONS = 80;
 const BYTES = 8;
 const ENVELOPE = 32;
@@ -204,8 +205,18 @@ export class Core {
     return at;
   }
 
+  /** Writes an array of texts. */
+  putTexts(take, texts) {
+    const list = take(4 * Math.max(texts.length, 1));
+    texts.forEach((text, i) => {
+      const at = this.putText(take, text);
+      this.view().setUint32(list + 4 * i, at, true);
+    });
+    return list;
+  }
+
   /** Writes the options for opening; see `OpenOptions` in index.d.ts. */
-  putOpenOptions(take, { modules = [], embedded = true }) {
+  putOpenOptions(take, { modules = [], embedded = true, onlySignedBy = [], signature = new Uint8Array(0) }) {
     const list = take(BYTES * Math.max(modules.length, 1));
     modules.forEach((module, i) => {
       const bytes = toBytes(module);
@@ -213,6 +224,7 @@ export class Core {
       this.view().setUint32(list + BYTES * i, at, true);
       this.view().setUint32(list + BYTES * i + 4, bytes.length, true);
     });
+    const [keys, signed] = [this.putTexts(take, onlySignedBy), this.put(take, signature)];
     const at = take(OPEN_OPTIONS);
     const view = this.view();
     new Uint8Array(view.buffer, at, OPEN_OPTIONS).fill(0);
@@ -221,6 +233,10 @@ export class Core {
     view.setUint32(at + 16, list, true);
     view.setUint32(at + 20, modules.length, true);
     view.setUint32(at + 28, embedded ? 0 : 1, true);
+    view.setUint32(at + 36, keys, true);
+    view.setUint32(at + 40, onlySignedBy.length, true);
+    view.setUint32(at + 44, signed, true);
+    view.setUint32(at + 48, signature.length, true);
     return at;
   }
 

@@ -2,8 +2,8 @@
 // The WASM code states which ranges it needs.
 
 import { HtexError } from "./core.js";
-import { addressOf, bytesOf, isBlob, library, open } from "./library.js";
-import { checked } from "./options.js";
+import { addressOf, bytesOf, isBlob, library, open, signatureAt } from "./library.js";
+import { SIGNED, checked, signedBy } from "./options.js";
 import { Handle } from "./texture.js";
 
 /** Number of index pages that are cached. Each has at most 40 KiB. */
@@ -16,6 +16,11 @@ class Remote {
   constructor(url, fetcher) {
     this.url = url;
     this.fetcher = fetcher;
+  }
+
+  /** Returns the signature beside the file; undefined if there is none. */
+  signature() {
+    return signatureAt(this.url, this.fetcher);
   }
 
   /** Returns the bytes from `start` to `end`, fewer at the end of the file. */
@@ -105,11 +110,13 @@ async function fileOf(source, fetcher) {
 export class Library extends Handle {
   /** Opens a library from its address, its bytes, a File or a Blob. */
   static async open(source, options = {}) {
-    const { fetch: fetcher = globalThis.fetch.bind(globalThis) } = checked(options, { fetch: "function" }, "Library.open");
+    const { fetch: fetcher = globalThis.fetch.bind(globalThis) } = checked(options, { fetch: "function", ...SIGNED }, "Library.open");
+    const signed = signedBy(options, "Library.open");
     const file = await fileOf(source, fetcher);
     const opened = new Library(await library(), file);
     try {
       await opened.start();
+      if (signed.onlySignedBy) await opened.checkSigned(signed);
     } catch (error) {
       opened.free();
       throw error;
@@ -135,6 +142,15 @@ export class Library extends Handle {
     }
     const { pages, ...stated } = JSON.parse(core.text("htex_index_json", this.id));
     Object.assign(this, stated, { pageCount: pages });
+  }
+
+  /** Refuses a library that none of the keys signed. Reads the whole index. */
+  async checkSigned({ onlySignedBy, signature }) {
+    const { core, file } = this;
+    const [start, end] = this.numbers("htex_index_range");
+    const given = { onlySignedBy, signature: signature ?? (await file.signature?.()) };
+    const bytes = await file.read(start, end);
+    core.scope((take) => core.call("htex_index_check_signed", this.id, core.put(take, bytes), bytes.length, core.putOpenOptions(take, given)));
   }
 
   /** Returns the start and end of a range that a function writes. */
@@ -256,6 +272,9 @@ export class Library extends Handle {
 
   /** Opens a texture. */
   async texture(name, options = {}) {
+    if (options.onlySignedBy) {
+      throw new HtexError("library.texture: a texture is signed with its library; give onlySignedBy to Library.open", "invalid-argument");
+    }
     return open(await this.bytes(name), options);
   }
 }

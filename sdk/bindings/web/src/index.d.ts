@@ -48,7 +48,19 @@ export interface Motion {
   y?: number;
 }
 
-export interface OpenOptions {
+/** Requires a signature. A file that is not signed is refused with the code "not-signed". */
+export interface Signed {
+  /** Public keys in hexadecimal digits, of which one must have signed the file. */
+  onlySignedBy?: string | string[];
+  /**
+   * The contents of the file with the signature (`oak.htex.sig`). Default: it is fetched from the
+   * address of the file, with `.sig` behind the path.
+   */
+  signature?: Bytes;
+}
+
+/** A texture of a library (`cloth.htexlib#oak`) is signed if its library is. */
+export interface OpenOptions extends Signed {
   /** Models as WASM modules. A module takes precedence over a built-in model with the same id. */
   modules?: Bytes[];
   /** Whether WASM modules that are embedded in the asset may run, in a sandbox. Default true. */
@@ -403,9 +415,10 @@ export class Library {
   /**
    * Opens a library from its address, its bytes, or a File or Blob. From an address, File or Blob,
    * only the ranges that are needed are read. `fetch` replaces the global function, for example to
-   * add headers to the requests for ranges.
+   * add headers to the requests for ranges. With `onlySignedBy`, one of the keys must have signed
+   * the library; this reads the whole index.
    */
-  static open(source: Bytes | Readable | Address, options?: { fetch?: Fetch }): Promise<Library>;
+  static open(source: Bytes | Readable | Address, options?: { fetch?: Fetch } & Signed): Promise<Library>;
   /** Name of the library; may be empty. */
   readonly name: string;
   /** What the library says about itself. */
@@ -432,7 +445,7 @@ export class Library {
    * Opens a texture. This makes two requests, or one if the page of the index with the texture is
    * already known.
    */
-  texture(name: string, options?: OpenOptions): Promise<Texture>;
+  texture(name: string, options?: Omit<OpenOptions, keyof Signed>): Promise<Texture>;
   /** Frees the memory of the library. Its textures stay open. */
   free(): void;
   [Symbol.dispose](): void;

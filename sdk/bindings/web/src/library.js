@@ -3,7 +3,7 @@
 import { Core, HtexError, toBytes } from "./core.js";
 import { host } from "./host.js";
 import { Library } from "./htexlib.js";
-import { OPEN, checked } from "./options.js";
+import { OPEN, checked, signedBy } from "./options.js";
 import { Texture } from "./texture.js";
 
 /** Returns where the library is. `setLibrary` replaces this function. */
@@ -117,17 +117,46 @@ export function library({ trusted = false } = {}) {
 }
 
 /** Makes a texture from its bytes, in a library that has been loaded. */
-export function opened(core, bytes, { modules = [], embedded = true, trusted = false } = {}) {
+export function opened(core, bytes, { modules = [], embedded = true, trusted = false } = {}, signed = {}) {
   const options = { modules: modules.map((module) => toBytes(module).slice()), embedded, trusted };
-  return Object.assign(new Texture(core, bytes, options), { bytes });
+  return Object.assign(new Texture(core, bytes, options, signed), { bytes });
 }
 
 /** Opens a texture from its bytes, a File, a Blob, a Response, or its address. */
 export async function open(source, options = {}) {
   checked(options, OPEN, "open");
+  const signed = signedBy(options, "open");
   // Both are fetched at the same time. If both fail, the first failure is reported.
-  const [core, bytes] = await Promise.all([library(options), bytesOf(source, "open")]);
-  return opened(core, bytes, options);
+  const [core, file] = await Promise.all([library(options), signedFile(source, signed)]);
+  return opened(core, file.bytes, options, file.signed);
+}
+
+/**
+ * Returns the bytes of a texture, and how they must be signed. Of a texture at an address, the
+ * signature is fetched from the address with `.sig`, unless it was given.
+ */
+async function signedFile(source, signed) {
+  if (!isAddress(source)) return { bytes: await bytesOf(source, "open"), signed };
+  const url = addressOf(source, "open");
+  // The signature of a texture's library was checked when the library was opened.
+  if (isInLibrary(url)) return { bytes: await bytesAt(url, signed), signed: {} };
+  if (!signed.onlySignedBy || signed.signature) return { bytes: await bytesAt(url), signed };
+  const [bytes, signature] = await Promise.all([bytesAt(url), signatureAt(url)]);
+  return { bytes, signed: { ...signed, signature } };
+}
+
+/** Largest size of a signature, bytes. */
+const MOST_SIGNATURE = 4096;
+
+/** Fetches the signature of a file; undefined if the server has none. */
+export async function signatureAt(url, fetcher = fetch) {
+  const address = new URL(url);
+  address.pathname += ".sig";
+  const response = await fetcher(address);
+  if (response.status === 404) return undefined;
+  const bytes = new Uint8Array(await received(response, `the signature ${address}`).arrayBuffer());
+  // The reader refuses one byte more.
+  return bytes.subarray(0, MOST_SIGNATURE + 1);
 }
 
 /** Copies the bytes that a caller passes in, in any of the forms that `open` accepts. */
@@ -145,17 +174,19 @@ export async function bytesOf(source, call) {
 }
 
 /** Downloads a texture's file. `cloth.htexlib#woven/cotton` is a texture of a library, of which only the needed ranges are fetched. */
-async function bytesAt(url) {
-  if (!url.hash || !/\.htexlib$/i.test(url.pathname)) {
+async function bytesAt(url, signed = {}) {
+  if (!isInLibrary(url)) {
     return new Uint8Array(await (await download(url, "the texture")).arrayBuffer());
   }
-  const opened = await Library.open(new URL(url.href.slice(0, -url.hash.length)));
+  const opened = await Library.open(new URL(url.href.slice(0, -url.hash.length)), signed);
   try {
     return await opened.bytes(decodeURIComponent(url.hash.slice(1)));
   } finally {
     opened.free();
   }
 }
+
+const isInLibrary = (url) => url.hash !== "" && /\.htexlib$/i.test(url.pathname);
 
 export function isBlob(source) {
   return typeof Blob !== "undefined" && source instanceof Blob;

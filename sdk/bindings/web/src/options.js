@@ -1,9 +1,11 @@
 // Checks options: their names and types. An unknown name is an error, because otherwise it would
 // silently have no effect.
 
-import { HtexError } from "./core.js";
+import { HtexError, toBytes } from "./core.js";
 
-export const OPEN = { modules: "array", embedded: "boolean", trusted: "boolean" };
+/** Options that require a signature; see `Signed` in index.d.ts. */
+export const SIGNED = { onlySignedBy: "any", signature: "any" };
+export const OPEN = { modules: "array", embedded: "boolean", trusted: "boolean", ...SIGNED };
 export const AT = { model: "string", at: "object" };
 export const READ = { model: "string", condition: "number" };
 export const VOICE = {
@@ -22,6 +24,21 @@ export const VOICE = {
   bands: "number",
 };
 const MOTION_OPTIONS = { speed: "number", force: "number", position: "number", x: "number", y: "number" };
+
+/**
+ * Returns the keys of which one must have signed, and the signature that was given; an empty object
+ * if no signature is required.
+ */
+export function signedBy({ onlySignedBy, signature }, call) {
+  if (onlySignedBy === undefined) {
+    if (signature === undefined) return {};
+    throw new HtexError(`${call}: a signature is of use only with onlySignedBy; give the keys that you accept`, "invalid-argument");
+  }
+  const keys = typeof onlySignedBy === "string" ? [onlySignedBy] : onlySignedBy;
+  const areKeys = Array.isArray(keys) && keys.length > 0 && keys.every((key) => typeof key === "string");
+  if (!areKeys) throw new HtexError(`${call}: onlySignedBy is a public key in hexadecimal digits, or an array of them`, "invalid-argument");
+  return { onlySignedBy: keys, signature: signature === undefined ? undefined : toBytes(signature).slice() };
+}
 
 const IS = {
   array: Array.isArray,

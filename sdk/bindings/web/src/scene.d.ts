@@ -22,6 +22,11 @@ export interface SceneOptions {
    * can stop a call that does not return. Default false.
    */
   trusted?: boolean;
+  /**
+   * Public keys in hexadecimal digits, of which one must have signed each texture. The signature of
+   * the file NAME is the file NAME.sig in `files`.
+   */
+  onlySignedBy?: string | string[];
 }
 
 export interface PlannedStage {

@@ -4,13 +4,13 @@
 import { AuthorCore } from "./author-core.js";
 import { HtexError, toBytes } from "./core.js";
 import { compiledFrom } from "./library.js";
-import { checked } from "./options.js";
+import { checked, signedBy } from "./options.js";
 
 let source = () => new URL("./htex-scene.wasm", import.meta.url);
 let core;
 
 /** Options for opening a scene. */
-const OPTIONS = { device: "string", profile: "string", settings: "any", quantity_gain: "number", trusted: "boolean" };
+const OPTIONS = { device: "string", profile: "string", settings: "any", quantity_gain: "number", trusted: "boolean", onlySignedBy: "any" };
 
 /** Frees scenes that their owner did not free. */
 const abandoned = typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, id }) => core.call("scene-free", { id }));
@@ -46,8 +46,9 @@ export async function scene(bytes, files = {}, options = {}) {
   checked(options, OPTIONS, "scene");
   const named = files instanceof Map ? [...files] : Object.entries(files);
   const given = [bytes, ...named.map(([, file]) => file?.bytes ?? file)].map((file) => toBytes(file));
-  const { trusted = false, ...device } = options;
-  const request = { files: named.map(([name]) => name), trusted, device };
+  const { trusted = false, onlySignedBy, ...device } = options;
+  const { onlySignedBy: keys = [] } = signedBy({ onlySignedBy }, "scene");
+  const request = { files: named.map(([name]) => name), trusted, only_signed_by: keys, device };
   const ready = await loaded();
   return new Scene(ready, ready.call("scene", request, given).document);
 }

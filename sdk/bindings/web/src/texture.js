@@ -50,11 +50,11 @@ const ALL_RUN = { trusted: true, modules: [], embedded: true };
 
 /** A texture: an open asset (a .htex file). */
 export class Texture extends Handle {
-  constructor(core, data, options = ALL_RUN) {
+  constructor(core, data, options = ALL_RUN, signed = {}) {
     const bytes = toBytes(data);
     const id = core.scope((take) => {
       const at = core.put(take, bytes);
-      const given = { ...options, modules: options.trusted ? options.modules : [] };
+      const given = { ...options, ...signed, modules: options.trusted ? options.modules : [] };
       core.call("htex_asset_from_bytes", at, bytes.length, core.putOpenOptions(take, given), core.results);
       return core.view().getBigUint64(core.results, true);
     });

@@ -130,3 +130,55 @@ test("what is not a library, is damaged or changes is an error that says so", as
     await server.end();
   }
 });
+
+/** Serves the fixtures in ranges or whole, and answers 404 to other names. */
+async function serveAll(files) {
+  const server = createServer((request, response) => {
+    const file = files[request.url.slice(1)];
+    if (!file) return response.writeHead(404).end();
+    const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
+    if (!range) return response.writeHead(200).end(file);
+    const part = file.subarray(Number(range[1]), Number(range[2]) + 1);
+    response.writeHead(206, { "Content-Range": `bytes ${range[1]}-${Number(range[1]) + part.length - 1}/${file.length}`, ETag: '"1"' });
+    response.end(part);
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  const end = () => new Promise((closed) => server.close(closed));
+  return { url: `http://127.0.0.1:${server.address().port}`, end };
+}
+
+test("only what a key signed is opened", async () => {
+  const names = ["vinyl.htex", "vinyl.htex.sig", "many.htexlib", "many.htexlib.sig"];
+  const files = Object.fromEntries(await Promise.all(names.map(async (name) => [name, await bytes(name)])));
+  const [texture, signature, many, signatureOfMany] = names.map((name) => files[name]);
+  const key = JSON.parse(signature).public_key;
+  const other = "00474ae0c6af07224d0a4250b8a3c82cc7c6e1a9e0e27bce347f01a6bd229caa";
+  const server = await serveAll(files);
+  const motion = { constant: { speed_mm_s: 80, force_n: 0.4 } };
+  const one = Buffer.from(JSON.stringify({ htex_scene: "1.0", surfaces: [{ asset: "vinyl.htex" }], motion, duration_s: 0.1 }));
+  const { scene } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "scene.node.js")));
+  const inLibrary = async (source, options) => (await Library.open(source, options)).texture("vinyl");
+  const ways = [
+    (keys) => open(texture, { onlySignedBy: keys, signature }),
+    (keys) => open(`${server.url}/vinyl.htex`, { onlySignedBy: keys }),
+    (keys) => open(`${server.url}/many.htexlib#vinyl`, { onlySignedBy: keys }),
+    (keys) => inLibrary(`${server.url}/many.htexlib`, { onlySignedBy: keys }),
+    (keys) => inLibrary(many, { onlySignedBy: keys, signature: signatureOfMany }),
+    (keys) => scene(one, { "vinyl.htex": texture, "vinyl.htex.sig": signature }, { onlySignedBy: keys }),
+  ];
+  for (const [i, way] of ways.entries()) {
+    for (const keys of [key, [other, key]]) await way(keys);
+    await assert.rejects(way(other), { code: "not-signed", message: /another key/ }, String(i));
+    await assert.rejects(way([]), { code: "invalid-argument", message: /onlySignedBy/ }, String(i));
+    await assert.rejects(way("alice"), { code: "invalid-argument", message: /64 hexadecimal digits/ }, String(i));
+  }
+  await assert.rejects(open(texture, { onlySignedBy: key }), { code: "not-signed", message: /no signature/ });
+  await assert.rejects(open(texture, { signature }), { code: "invalid-argument", message: /onlySignedBy/ });
+  const changed = Buffer.from(many);
+  // The hash of the index that the header states is the signed one, and a page is another.
+  changed[200] ^= 1;
+  await assert.rejects(inLibrary(changed, { onlySignedBy: key, signature: signatureOfMany }));
+  delete files["vinyl.htex.sig"];
+  await assert.rejects(open(`${server.url}/vinyl.htex`, { onlySignedBy: key }), { code: "not-signed", message: /no signature/ });
+  await server.end();
+});

@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::archive::too_large;
 use crate::limits::Limits;
 use crate::rules::FILE_TOO_LARGE;
+use crate::signing::{Signers, read_signature};
 use crate::validate::inspect;
 use crate::{Asset, ReadError, block};
 use htex_base::finding::{Finding, Findings};
@@ -61,6 +62,46 @@ impl Asset {
             return Self::from_bytes_with(&bytes, &limits);
         }
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
+    }
+
+    /// Reads an asset from a file, as [`Self::open`] does, if one of `signers` signed it. The
+    /// signature of `oak.htex` is in `oak.htex.sig`. A texture of a library is signed if its library
+    /// is. The bytes that are checked are those that are read.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::open`], [`ReadError::Signature`] if the file is not signed by
+    /// one of `signers`, and [`ReadError::Io`] if its signature cannot be read.
+    pub fn open_signed(path: &Path, signers: &Signers) -> Result<Self, ReadError> {
+        let signature = read_signature(Self::file_of(path))?;
+        #[cfg(feature = "library")]
+        if let Some((library, name)) = in_library(path) {
+            use crate::library::{Library, LibraryError};
+            let read = Library::open(library).and_then(|library| {
+                library.check_signed(signature.as_deref(), signers)?;
+                library.get(name)
+            });
+            return match read {
+                Ok(bytes) => Self::from_bytes(&bytes),
+                Err(LibraryError::Signature(error)) => Err(error.into()),
+                Err(error) => Err(ReadError::Io { path: path.to_owned(), error: error.into() }),
+            };
+        }
+        let bytes = read_capped(path, &Limits::default())?;
+        Self::from_signed_bytes(&bytes, signature.as_deref(), signers)
+    }
+
+    /// Reads an asset from bytes, within the default [`Limits`], if one of `signers` signed it.
+    /// `signature` is the contents of the file with the signature, or `None` if there is none.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::from_bytes`], and [`ReadError::Signature`] if the bytes are not
+    /// signed by one of `signers`.
+    pub fn from_signed_bytes(
+        bytes: &[u8],
+        signature: Option<&[u8]>,
+        signers: &Signers,
+    ) -> Result<Self, ReadError> {
+        signers.read_asset(bytes, signature)
     }
 
     /// Returns the file that [`Self::open`] reads: the path itself, or the library's file for a

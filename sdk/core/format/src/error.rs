@@ -31,6 +31,9 @@ pub enum ReadError {
         /// All findings, including warnings and information.
         findings: Vec<Finding>,
     },
+    /// The file is not signed as the program requires ([`crate::signing::Signers`]).
+    #[error("{}", crate::signing::refusal(.0))]
+    Signature(#[from] crate::signing::SignatureError),
 }
 
 /// Error of writing an asset.

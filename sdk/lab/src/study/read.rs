@@ -94,21 +94,23 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
 /// Checks the files, motion and device of a study by the rules for scenes. To check the files,
 /// opens each texture with each model as in the trials. `path` is the study file. `device` replaces
 /// settings of the study's own device; the default value changes nothing.
+///
+/// # Errors
+/// Returns [`SceneError::Unsigned`] if a texture is not signed as `around` requires.
 pub fn check_files(
     study: &Study,
     path: &Path,
     around: &Surroundings<'_>,
     device: &DeviceOverride,
     findings: &mut Vec<Finding>,
-) {
+) -> Result<(), SceneError> {
     for (texture, asset) in study.textures.iter().enumerate() {
         for (pointer, model) in models(study) {
             let scene = scene_of(study, &asset.asset, model);
             let found = match Scene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
                 Err(SceneError::Invalid { findings }) => findings,
-                // The scene is in memory, so reading it as a file cannot fail.
-                Err(_) => Vec::new(),
+                Err(error) => return Err(error),
             };
             for mut finding in found {
                 finding.pointer = match &finding.pointer[..] {
@@ -122,6 +124,7 @@ pub fn check_files(
             }
         }
     }
+    Ok(())
 }
 
 /// Returns all models of a study with their pointers, including the model of the gain matching.

@@ -227,6 +227,8 @@ pub enum ErrorKind {
     Io,
     /// The file is not a valid asset.
     InvalidAsset,
+    /// None of the accepted keys signed the file.
+    Signature,
     /// The library is invalid, or has no texture with this name.
     Library,
     /// The texture has no representation for this model.
@@ -248,7 +250,10 @@ impl Error {
     pub fn kind(&self) -> ErrorKind {
         match self {
             Self::Read(ReadError::Io { .. }) => ErrorKind::Io,
+            Self::Read(ReadError::Signature(_)) => ErrorKind::Signature,
             Self::Read(_) => ErrorKind::InvalidAsset,
+            #[cfg(feature = "library")]
+            Self::Library(htex_format::library::LibraryError::Signature(_)) => ErrorKind::Signature,
             #[cfg(feature = "library")]
             Self::Library(_) => ErrorKind::Library,
             Self::NoRepresentation { .. } => ErrorKind::NoRepresentation,

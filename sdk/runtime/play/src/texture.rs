@@ -6,6 +6,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+use htex_format::signing::Signers;
 use htex_format::{ErrorMeasure, Manifest, Quantity};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry};
 
@@ -44,6 +45,55 @@ impl Texture {
     /// Returns an error if the bytes are not a valid asset.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
+    }
+
+    /// Opens a file, if one of `signers` signed it. The signature of `oak.htex` is in
+    /// `oak.htex.sig`; a texture of a library is signed if its library is.
+    ///
+    /// ```no_run
+    /// use htex::format::signing::Signers;
+    /// let key = "00474ae0c6af07224d0a4250b8a3c82cc7c6e1a9e0e27bce347f01a6bd229caa".parse()?;
+    /// let texture = htex::Texture::open_signed("sandpaper.htex", &Signers::new([key]))?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::open`], and an error if none of `signers` signed the file.
+    pub fn open_signed(path: impl AsRef<Path>, signers: &Signers) -> Result<Self, Error> {
+        let data = htex_format::Asset::open_signed(path.as_ref(), signers)?;
+        Ok(Self::new(data).with_embedded())
+    }
+
+    /// Opens an asset in memory, if one of `signers` signed it. `signature` is the contents of the
+    /// file with its signature.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::from_bytes`], and an error if none of `signers` signed the asset.
+    pub fn from_signed_bytes(
+        bytes: &[u8],
+        signature: &[u8],
+        signers: &Signers,
+    ) -> Result<Self, Error> {
+        let data = htex_format::Asset::from_signed_bytes(bytes, Some(signature), signers)?;
+        Ok(Self::new(data).with_embedded())
+    }
+
+    /// Opens a texture in a library, if one of `signers` signed the library. `signature` is the
+    /// contents of the file with the library's signature. The first call for a library reads its
+    /// whole index.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::from_library`], and an error if none of `signers` signed the
+    /// library.
+    #[cfg(feature = "library")]
+    pub fn from_signed_library<S: htex_format::library::LibrarySource>(
+        library: &htex_format::library::Library<S>,
+        name: &str,
+        signature: &[u8],
+        signers: &Signers,
+    ) -> Result<Self, Error> {
+        library.check_signed(Some(signature), signers)?;
+        Self::from_library(library, name)
     }
 
     /// Opens a texture in a library. The embedded and the built-in models can play the texture.

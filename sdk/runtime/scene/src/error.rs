@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use htex_base::finding::Finding;
 use htex_format::parse_json;
+use htex_format::signing::SignatureError;
 
 use crate::load::Scene;
 
@@ -25,6 +26,13 @@ pub enum SceneError {
     Invalid {
         /// All findings, including those that are not errors.
         findings: Vec<Finding>,
+    },
+    /// An asset is not signed as the program requires ([`crate::Surroundings::signers`]).
+    #[error("{}: {}", .asset.display(), htex_format::ReadError::Signature(.error.clone()))]
+    Unsigned {
+        asset: PathBuf,
+        #[source]
+        error: SignatureError,
     },
     /// A surface's asset, or its model, cannot be used.
     #[error("surface {surface} ({}): {source}", .asset.display())]
@@ -152,6 +160,8 @@ pub enum SceneErrorKind {
     Io,
     /// The scene is invalid, or cannot be planned for its device, rate or budget.
     InvalidScene,
+    /// None of the accepted keys signed a texture.
+    Signature,
     /// No model is available for any of a surface's representations.
     NoModel,
     /// A texture or its model failed.
@@ -165,6 +175,7 @@ impl SceneError {
     pub fn kind(&self) -> SceneErrorKind {
         match self {
             Self::Io { .. } => SceneErrorKind::Io,
+            Self::Unsigned { .. } => SceneErrorKind::Signature,
             Self::Surface { .. } => SceneErrorKind::Model,
             Self::NoModel { .. } => SceneErrorKind::NoModel,
             Self::Motion { .. } => SceneErrorKind::Motion,

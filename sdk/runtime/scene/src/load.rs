@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use htex_base::finding::{Finding, Findings, Hint, Notice, Report, Rule};
 use htex_device::{Capabilities, Devices, Rates, Settings};
-use htex_format::Quantity;
+use htex_format::signing::{SignatureError, Signers, signature_path};
+use htex_format::{Asset, Quantity, ReadError as ReadFailure};
 use htex_play::{Registry, Texture, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
 
@@ -32,6 +33,8 @@ pub struct Surroundings<'a> {
     /// The devices on which the scene may play. `None` means that the program takes the samples
     /// itself instead of playing them on a device. The scene's device is then ignored.
     pub devices: Option<&'a Devices>,
+    /// Who must have signed each texture. `None` also accepts textures without a signature.
+    pub signers: Option<&'a Signers>,
 }
 
 /// Supplies the files of a scene, for programs that do not keep them in a folder.
@@ -101,7 +104,20 @@ impl Scene {
     /// all findings if at least one finding is an error.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let models = &Registry::builtin();
-        let around = Surroundings { models, embedded: true, devices: None };
+        let around = Surroundings { models, embedded: true, devices: None, signers: None };
+        Self::open_with(path.as_ref(), &around, &DeviceOverride::default())
+    }
+
+    /// Opens a scene file as [`Self::open`] does, if one of `signers` signed each texture. Only
+    /// textures are signed: the scene itself, its motion and its response are not.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::open`], and [`SceneError::Unsigned`] if none of `signers` signed
+    /// a texture.
+    pub fn open_signed(path: impl AsRef<Path>, signers: &Signers) -> Result<Self, SceneError> {
+        let models = &Registry::builtin();
+        let signers = Some(signers);
+        let around = Surroundings { models, embedded: true, devices: None, signers };
         Self::open_with(path.as_ref(), &around, &DeviceOverride::default())
     }
 
@@ -154,7 +170,10 @@ impl Scene {
     ) -> Result<Self, SceneError> {
         let mut findings = Findings::default();
         let file = read_scene(bytes, &Limits::default(), &mut findings);
-        let scene = file.and_then(|file| load(file, place, around, device, &mut findings));
+        let scene = match file {
+            Some(file) => load(file, place, around, device, &mut findings)?,
+            None => None,
+        };
         finish(scene, findings).map_err(|error| error.pointing_into(bytes))
     }
 
@@ -184,7 +203,7 @@ impl Scene {
         check(&file, &Limits::default(), &mut findings);
         let device = (device, &stem(asset)[..]);
         let place = Place::Folder(PathBuf::new());
-        let scene = load(file, &place, around, device, &mut findings);
+        let scene = load(file, &place, around, device, &mut findings)?;
         finish(scene, findings)
     }
 
@@ -284,15 +303,16 @@ fn folder(path: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).to_owned()
 }
 
-/// Opens the files of a scene. Adds a finding for each missing file, and then returns `None`.
+/// Opens the files of a scene. Adds a finding for each missing file, and then returns `None`. A
+/// texture that is not signed as the program requires is an error.
 fn load(
     mut file: SceneFile,
     place: &Place<'_>,
     around: &Surroundings<'_>,
     device: (&DeviceOverride, &str),
     findings: &mut Findings,
-) -> Option<Scene> {
-    let assets = open_assets(&file, place, around, findings);
+) -> Result<Option<Scene>, SceneError> {
+    let assets = open_assets(&file, place, around, findings)?;
     let trace = open_trace(&file, place, findings);
     // The override is applied before the response is opened, because choosing another adapter drops
     // the scene's response.
@@ -308,7 +328,9 @@ fn load(
     };
     // Missing assets end the function only here, so that they do not hide the findings of the
     // device.
-    let assets = assets?;
+    let Some(assets) = assets else {
+        return Ok(None);
+    };
     check_quantities(&assets, findings);
     // An invalid motion already has a finding.
     if !findings.has_errors() {
@@ -317,15 +339,10 @@ fn load(
     if let Some(response) = &response {
         check_response(response, &assets, &file.device, findings);
     }
-    Some(Scene {
-        assets,
-        trace,
-        response,
-        settings: settings?,
-        file,
-        folder: place.folder(),
-        notes: Vec::new(),
-    })
+    let folder = place.folder();
+    let scene =
+        |settings| Scene { assets, trace, response, settings, file, folder, notes: Vec::new() };
+    Ok(settings.map(scene))
 }
 
 /// Opens the assets of all surfaces. Each file is opened only once.
@@ -334,10 +351,9 @@ fn open_assets(
     place: &Place<'_>,
     around: &Surroundings<'_>,
     findings: &mut Findings,
-) -> Option<Vec<Texture>> {
-    type OpenResult = Result<Texture, (&'static Rule, String)>;
+) -> Result<Option<Vec<Texture>>, SceneError> {
     // Nothing depends on the order of this map.
-    let mut opened: HashMap<&Path, OpenResult> = HashMap::new();
+    let mut opened: HashMap<&Path, Result<Texture, Unusable>> = HashMap::new();
     let mut assets = Vec::new();
     for (i, surface) in scene.surfaces.iter().enumerate() {
         let open = || open_asset(&surface.asset, place, around);
@@ -346,42 +362,75 @@ fn open_assets(
                 check_representation(asset, surface, i, findings);
                 assets.push(asset.clone());
             }
-            Err((rule, message)) => {
+            Err(Unusable::Found(rule, message)) => {
                 findings.add(rule, format!("/surfaces/{i}/asset"), message.clone());
+            }
+            Err(Unusable::Unsigned(error)) => {
+                let (asset, error) = (surface.asset.clone(), error.clone());
+                return Err(SceneError::Unsigned { asset, error });
             }
         }
     }
-    (assets.len() == scene.surfaces.len()).then_some(assets)
+    Ok((assets.len() == scene.surfaces.len()).then_some(assets))
+}
+
+/// The reason why an asset of a scene is not used.
+enum Unusable {
+    /// The scene breaks a rule.
+    Found(&'static Rule, String),
+    /// The program requires a signature.
+    Unsigned(SignatureError),
 }
 
 fn open_asset(
     asset: &Path,
     place: &Place<'_>,
     around: &Surroundings<'_>,
-) -> Result<Texture, (&'static Rule, String)> {
+) -> Result<Texture, Unusable> {
     let data = match place {
         Place::Folder(folder) => {
             let path = folder.join(asset);
             if !may_be_read(htex_format::Asset::file_of(&path)) {
-                return Err((rule::ASSET_INVALID, no_file(asset)));
+                return Err(Unusable::Found(rule::ASSET_INVALID, no_file(asset)));
             }
-            htex_format::Asset::open(&path)
+            match around.signers {
+                None => Asset::open(&path),
+                Some(signers) => Asset::open_signed(&path, signers),
+            }
         }
-        Place::Given(files) => files
-            .read(asset)
-            .map_err(|error| htex_format::ReadError::Io { path: asset.to_owned(), error })
-            .and_then(|bytes| htex_format::Asset::from_bytes(&bytes)),
+        Place::Given(files) => read_given(*files, asset, around.signers),
     };
-    let opened = data
-        .map_err(htex_play::Error::from)
-        .map(|data| Texture::with_registry(data, around.models.clone()))
-        .map(|asset| if around.embedded { asset.with_embedded() } else { asset });
-    opened.map_err(|error| match &error {
-        htex_play::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
-            (rule::ASSET_MISSING, missing(asset))
+    let data = data.map_err(|error| match error {
+        ReadFailure::Signature(error) => Unusable::Unsigned(error),
+        ReadFailure::Io { error, .. } if is_missing(&error) => {
+            Unusable::Found(rule::ASSET_MISSING, missing(asset))
         }
-        _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
-    })
+        error => Unusable::Found(rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
+    })?;
+    let texture = Texture::with_registry(data, around.models.clone());
+    Ok(if around.embedded { texture.with_embedded() } else { texture })
+}
+
+/// Reads an asset that the program supplies. The signature of the file `NAME` is the file `NAME.sig`.
+fn read_given(
+    files: &dyn FileSource,
+    asset: &Path,
+    signers: Option<&Signers>,
+) -> Result<Asset, ReadFailure> {
+    let read = |path: &Path| {
+        let failed = |error| ReadFailure::Io { path: path.to_owned(), error };
+        files.read(path).map_err(failed)
+    };
+    let bytes = read(asset)?;
+    let Some(signers) = signers else {
+        return Asset::from_bytes(&bytes);
+    };
+    let signature = match read(&signature_path(asset)) {
+        Ok(signature) => Some(signature),
+        Err(ReadFailure::Io { error, .. }) if is_missing(&error) => None,
+        Err(error) => return Err(error),
+    };
+    Asset::from_signed_bytes(&bytes, signature.as_deref(), signers)
 }
 
 /// Reports assets whose quantity differs from the first asset's.

@@ -10,6 +10,7 @@ use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress, Query
 use serde::Deserialize;
 
 use crate::handles::{Kind, Table};
+use crate::options::{htex_open_options, models};
 use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
@@ -133,6 +134,39 @@ pub unsafe extern "C" fn htex_index_json(
         });
         // SAFETY: the caller passed these pointers.
         unsafe { write_text(&json.to_string(), out, capacity, length) }
+    })
+}
+
+/// Writes the byte range of the whole index, for htex_index_check_signed: the offsets of its start
+/// and end.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_range(index: u64, out: *mut f64) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the place is the caller's.
+        unsafe { write_range(&state.index()?.range(), out) }
+    })
+}
+
+/// Refuses a library that is not signed as the options require. `bytes` are the bytes of
+/// htex_index_range. From then on, pages and textures that the signature does not cover are refused.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_check_signed(
+    index: u64,
+    bytes: *const u8,
+    len: usize,
+    options: *const htex_open_options,
+) -> htex_status {
+    guarded(|| {
+        let mut state = INDEXES.exclusive(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (bytes, signed) = unsafe { (slice(bytes, len)?, models(options)?.signed) };
+        signed.check_index(state.index()?, bytes)?;
+        if let State::Open(_, entries) = &mut *state {
+            // A page that was read before is read again.
+            entries.clear();
+        }
+        Ok(())
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use htex::library::Library;
 use htex::library::{LibrarySource, LocalFile};
@@ -17,21 +17,29 @@ use crate::status::{Failure, guarded, htex_status};
 
 /// Where the bytes of a library come from.
 enum Source {
-    File(LocalFile),
+    File(LocalFile, PathBuf),
     Memory(Vec<u8>),
     Reader(Reader),
 }
 
 impl Source {
     fn file(path: &Path) -> Result<Self, Failure> {
-        Ok(Self::File(LocalFile::open(path)?))
+        Ok(Self::File(LocalFile::open(path)?, path.to_owned()))
+    }
+
+    /// Returns the path of a library that is a file.
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Self::File(_, path) => Some(path),
+            Self::Memory(_) | Self::Reader(_) => None,
+        }
     }
 }
 
 impl LibrarySource for Source {
     fn len(&self) -> io::Result<u64> {
         match self {
-            Self::File(file) => file.len(),
+            Self::File(file, _) => file.len(),
             Self::Memory(bytes) => Ok(bytes.len() as u64),
             Self::Reader(reader) => Ok(reader.len()),
         }
@@ -39,7 +47,7 @@ impl LibrarySource for Source {
 
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
         match self {
-            Self::File(file) => file.read_at(offset, buffer),
+            Self::File(file, _) => file.read_at(offset, buffer),
             Self::Memory(bytes) => {
                 let from = usize::try_from(offset).map_or(bytes.len(), |at| at.min(bytes.len()));
                 let len = buffer.len().min(bytes.len() - from);
@@ -190,6 +198,7 @@ pub(super) unsafe fn asset(
         let library = LIBRARIES.shared(library.id)?;
         // SAFETY: the caller passed these pointers.
         let (name, models) = unsafe { (needed_text(name)?, models(options)?) };
+        models.signed.check_library(&library, library.source().path())?;
         let bytes = library.get(name)?;
         let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)

@@ -109,8 +109,12 @@ unsafe fn open(
         let (models, asked, out) =
             unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
         // No devices, because the program itself takes the samples.
-        let around =
-            Surroundings { models: &models.registry, embedded: models.embedded, devices: None };
+        let around = Surroundings {
+            models: &models.registry,
+            embedded: models.embedded,
+            devices: None,
+            signers: models.signed.signers_of_files()?,
+        };
         let scene = source.open(&around)?;
         for note in &scene.notes {
             log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());

@@ -16,5 +16,6 @@ mod hosts;
 mod misuse;
 mod programs;
 mod readers;
+mod signed;
 #[cfg(target_os = "linux")]
 mod unity;

@@ -52,6 +52,7 @@ namespace Htex
         InvalidLibrary = 14,
         Absent = 15,
         Device = 16,
+        NotSigned = 17,
     }
 
     /// <summary>The error of a call to libhtex.</summary>
@@ -215,6 +216,16 @@ namespace Htex
         public bool Embedded = true;
         /// <summary>Whether installed models are loaded.</summary>
         public bool Installed;
+        /// <summary>
+        /// Public keys, each in 64 hexadecimal digits. If there are any, one of them must have
+        /// signed each texture. The signature of a file is beside it, in PATH.sig.
+        /// </summary>
+        public string[] OnlySignedBy = new string[0];
+        /// <summary>
+        /// The contents of the file with the signature, for what has no path; null if there is
+        /// none.
+        /// </summary>
+        public byte[] Signature;
     }
 
     /// <summary>
@@ -1225,6 +1236,9 @@ namespace Htex
             internal UIntPtr ModulesLen;
             internal IntPtr Cache;
             internal uint NoEmbedded, Installed;
+            internal IntPtr OnlySignedBy;
+            internal UIntPtr OnlySignedByLen;
+            internal Bytes Signature;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -1291,6 +1305,7 @@ namespace Htex
             {
                 options = options ?? new OpenOptions();
                 var plugins = Array.ConvertAll(options.Plugins, plugin => Keep(Utf8(plugin)));
+                var keys = Array.ConvertAll(options.OnlySignedBy, key => Keep(Utf8(key)));
                 var modules = Array.ConvertAll(options.Modules, module => new Bytes { Data = Keep(module), Len = Length(module) });
                 Options = new OpenOptionsC
                 {
@@ -1303,6 +1318,9 @@ namespace Htex
                     Installed = options.Installed ? 1u : 0u,
                     Modules = Keep(modules),
                     ModulesLen = Length(modules),
+                    OnlySignedBy = Keep(keys),
+                    OnlySignedByLen = Length(keys),
+                    Signature = new Bytes { Data = Keep(options.Signature), Len = Length(options.Signature) },
                 };
             }
 

@@ -45,6 +45,7 @@ from ._errors import (
     OptionError,
     RecordingError,
     SceneError,
+    SignatureError,
 )
 from ._exchange import export, formats, import_file
 from ._htex import Device, Library, Scene, Texture, Voice, __version__, devices, models, open, pack, unregister_model
@@ -85,6 +86,7 @@ __all__ = [
     "Response",
     "Scene",
     "SceneError",
+    "SignatureError",
     "Simulation",
     "Spectrum",
     "Texture",

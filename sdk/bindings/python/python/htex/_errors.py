@@ -49,6 +49,10 @@ class SceneError(Error):
     """A scene is invalid, or cannot be planned or played."""
 
 
+class SignatureError(Error):
+    """A file is not signed by a key in ``only_signed_by``."""
+
+
 for _class in (
     Error,
     AssetError,
@@ -61,5 +65,6 @@ for _class in (
     OptionError,
     RecordingError,
     SceneError,
+    SignatureError,
 ):
     _class.__module__ = "htex"

@@ -121,6 +121,8 @@ class Library:
         plugins: Sequence[_Path] = ...,
         embedded: bool = True,
         installed: bool = False,
+        only_signed_by: str | Sequence[str] | None = None,
+        signature: bytes | None = None,
     ) -> Library: ...
     @property
     def name(self) -> str: ...
@@ -240,6 +242,7 @@ class Scene:
         profile: str | None = None,
         settings: Mapping[str, Any] = ...,
         quantity_gain: float | None = None,
+        only_signed_by: str | Sequence[str] | None = None,
     ) -> Scene: ...
     @property
     def unit(self) -> str: ...
@@ -317,6 +320,8 @@ def open(
     plugins: Sequence[_Path] = ...,
     embedded: bool = True,
     installed: bool = False,
+    only_signed_by: str | Sequence[str] | None = None,
+    signature: bytes | None = None,
 ) -> Texture: ...
 def pack(
     path: _Path,

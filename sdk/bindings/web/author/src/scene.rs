@@ -8,6 +8,7 @@ use std::path::Path;
 
 use htex::Motion;
 use htex::device::{Capabilities, Devices};
+use htex::format::signing::Signers;
 use htex::model::{Registry, Search, WasmEngine, WasmLimits};
 use htex::scene::{
     Costs, DeviceOverride, FileSource, Plan, Renderer, Scene, SceneError, SceneErrorKind,
@@ -38,6 +39,7 @@ struct OpenScene {
     files: FilesByPath,
     models: Registry,
     embedded: bool,
+    signers: Option<Signers>,
     devices: Devices,
     device: DeviceOverride,
     loaded: Scene,
@@ -79,6 +81,7 @@ struct SceneSummary<'a> {
 pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.texts("files")?;
     let embedded = call.flag("trusted")?;
+    let signers = signers(&call.texts("only_signed_by")?)?;
     let device = device(call.object("device")?)?;
     call.finish()?;
     let [scene, others @ ..] = files else {
@@ -91,7 +94,9 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let models = models(embedded)?;
     let devices = Devices::new(htex_device_builtin::devices());
     let files = FilesByPath(named.collect());
-    let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
+    let signed = signers.as_ref();
+    let around =
+        Surroundings { models: &models, embedded, devices: Some(&devices), signers: signed };
     let loaded = Scene::from_files(scene, &files, &around, &device)?;
     let known = devices.find_output(&loaded.file.device.adapter);
     let able = known
@@ -102,6 +107,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         files,
         models,
         embedded,
+        signers,
         devices,
         device,
         loaded,
@@ -119,6 +125,14 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     });
     let opened = SceneSummary { id, unit, rate: plan.rate_hz, plan: &plan, notes };
     Answer::new(&opened, Vec::new())
+}
+
+/// Returns who must have signed the textures; `None` without a key.
+fn signers(keys: &[String]) -> Result<Option<Signers>, Refusal> {
+    let wrong = |error| Refusal::argument(format!("onlySignedBy: {error}"));
+    let keys: Result<Vec<_>, _> = keys.iter().map(|key| key.parse().map_err(wrong)).collect();
+    let keys = keys?;
+    Ok((!keys.is_empty()).then(|| Signers::new(keys)))
 }
 
 /// Returns the built-in models. If `embedded` is true, models that are embedded in textures can
@@ -306,6 +320,7 @@ impl OpenScene {
             models: &self.models,
             embedded: self.embedded,
             devices: Some(&self.devices),
+            signers: self.signers.as_ref(),
         };
         let device = DeviceOverride { live: true, ..self.device.clone() };
         // Loads the scene again, because some device settings have another default for a live
@@ -335,6 +350,7 @@ impl From<SceneError> for Refusal {
             SceneErrorKind::Motion => Self::motion(error),
             SceneErrorKind::Model => Self::model(error),
             SceneErrorKind::NoModel => Self::new(HTEX_STATUS_NO_MODEL, "no-model", error),
+            SceneErrorKind::Signature => Self::new(HTEX_STATUS_NOT_SIGNED, "not-signed", error),
             _ => Self::scene(error),
         }
     }

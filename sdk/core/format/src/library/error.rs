@@ -47,6 +47,9 @@ pub enum LibraryError {
         /// The most similar names in the library; empty if no name is similar.
         nearest: Vec<String>,
     },
+    /// The library is not signed as the program requires ([`crate::signing::Signers`]).
+    #[error("{}", crate::signing::refusal(.0))]
+    Signature(#[from] crate::signing::SignatureError),
     /// The library could not be written. If the file existed before, it is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Write {

@@ -30,6 +30,12 @@ impl Fault {
         Self::new(rule::LIBRARY_PAGE_INVALID, place, message)
     }
 
+    /// Creates the fault for an index that does not have the hash in the header.
+    pub(crate) fn index_changed() -> Self {
+        let message = "the index does not have the header's hash; get the file again";
+        Self::new(rule::LIBRARY_INDEX_CHANGED, "/header", message)
+    }
+
     pub(crate) fn add_to(self, findings: &mut Findings) {
         findings.add(self.rule, self.place, self.message);
     }

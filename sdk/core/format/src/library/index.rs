@@ -2,6 +2,7 @@
 //! pages and textures are in the file, and decodes the bytes that the caller has read.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use htex_base::finding::{Finding, Findings};
 
@@ -18,6 +19,7 @@ use crate::library::ratio::Ratio;
 use crate::library::root::Root;
 use crate::library::rules as rule;
 use crate::library::spectra::read_spectra;
+use crate::signing::{PublicKey, SignedContent, Signers};
 
 /// The header and the root page of an open library.
 ///
@@ -35,12 +37,77 @@ use crate::library::spectra::read_spectra;
 pub struct Index {
     header: Header,
     root: Root,
+    /// BLAKE3 of the root page as it is in the file.
+    root_blake3: [u8; 32],
+    /// BLAKE3 of each leaf page as it is in the file, after [`Index::check_hash`].
+    leaves_blake3: OnceLock<Vec<[u8; 32]>>,
     limits: Limits,
 }
 
 impl Index {
-    pub(crate) fn new(header: Header, root: Root, limits: Limits) -> Self {
-        Self { header, root, limits }
+    pub(crate) fn new(header: Header, root: Root, root_blake3: [u8; 32], limits: Limits) -> Self {
+        Self { header, root, root_blake3, leaves_blake3: OnceLock::new(), limits }
+    }
+
+    /// Compares the whole index with the hash that the header states. `read` returns the bytes of a
+    /// range of the file; the ranges follow each other. From then on, [`Self::read_leaf`] refuses a
+    /// page that differs, so that a file that changes later cannot pass for the one that was checked.
+    ///
+    /// # Errors
+    /// Returns [`LibraryError::Invalid`] if the index does not have the hash, and the errors of
+    /// `read`.
+    pub fn check_hash(
+        &self,
+        mut read: impl FnMut(Range<u64>) -> Result<Vec<u8>, LibraryError>,
+    ) -> Result<(), LibraryError> {
+        if self.is_checked() {
+            return Ok(());
+        }
+        let root = read(self.header.root.clone())?;
+        let mut whole = blake3::Hasher::new();
+        whole.update(&root);
+        let mut leaves = Vec::new();
+        for leaf in 0..self.leaves() {
+            let page = read(self.leaf_range(leaf).unwrap_or_default())?;
+            whole.update(&page);
+            leaves.push(*blake3::hash(&page).as_bytes());
+        }
+        let is_opened_root = blake3::hash(&root).as_bytes() == &self.root_blake3;
+        if !is_opened_root || whole.finalize().as_bytes() != &self.blake3() {
+            return Err(Fault::index_changed().into());
+        }
+        // Another thread that was faster has kept the same hashes.
+        let _ = self.leaves_blake3.set(leaves);
+        Ok(())
+    }
+
+    /// Returns the byte range of the whole index in the file, which [`Self::check_hash`] reads.
+    pub fn range(&self) -> Range<u64> {
+        self.header.root.start..self.header.leaves.end
+    }
+
+    /// Returns whether [`Self::check_hash`] has succeeded.
+    pub(crate) fn is_checked(&self) -> bool {
+        self.leaves_blake3.get().is_some()
+    }
+
+    /// Returns the accepted key that signed the library. Compares the whole index with its hash, as
+    /// [`Self::check_hash`] does. `signature` is the contents of the file with the signature, or
+    /// `None` if there is none.
+    ///
+    /// # Errors
+    /// Returns [`LibraryError::Signature`] if the library is not signed by one of `signers`, and the
+    /// errors of [`Self::check_hash`].
+    pub fn check_signed(
+        &self,
+        signature: Option<&[u8]>,
+        signers: &Signers,
+        read: impl FnMut(Range<u64>) -> Result<Vec<u8>, LibraryError>,
+    ) -> Result<PublicKey, LibraryError> {
+        // First what needs no reading.
+        let key = signers.check(&SignedContent::index(self), signature)?;
+        self.check_hash(read)?;
+        Ok(key)
     }
 
     pub(crate) fn header(&self) -> &Header {
@@ -156,6 +223,11 @@ impl Index {
     }
 
     pub(crate) fn leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, Fault> {
+        let known = self.leaves_blake3.get().and_then(|leaves| leaves.get(leaf));
+        if known.is_some_and(|known| blake3::hash(bytes).as_bytes() != known) {
+            let message = "the page changed after the index was checked; open the library again";
+            return Err(Fault::new(rule::LIBRARY_INDEX_CHANGED, leaf_place(leaf), message));
+        }
         let page = page::unpack(bytes, self.limits.leaf_bytes, &leaf_place(leaf))?;
         let reader =
             LeafReader { leaf, root: &self.root, header: &self.header, limits: &self.limits };

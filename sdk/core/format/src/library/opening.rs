@@ -129,6 +129,6 @@ impl Opening {
         let packed = self.start.get(HEADER_BYTES..header.root.end as usize).unwrap_or_default();
         let root = page::unpack(packed, self.limits.root_bytes, PLACE)?;
         let root = Root::read(&root, &header, self.limits.leaf_bytes)?;
-        Ok(Index::new(header, root, self.limits))
+        Ok(Index::new(header, root, *blake3::hash(packed).as_bytes(), self.limits))
     }
 }

@@ -16,6 +16,7 @@ use crate::library::metadata::LibraryMetadata;
 use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
+use crate::signing::{PublicKey, Signers};
 
 /// When all entries are listed, at most this many bytes of the index are read at once.
 const READ_AHEAD: u64 = 1 << 20;
@@ -56,6 +57,8 @@ struct Spectra {
 struct Leaf {
     number: usize,
     entries: Arc<Vec<Entry>>,
+    /// Whether the page was compared with the hash of a checked index.
+    is_checked: bool,
 }
 
 impl Library<LocalFile> {
@@ -99,6 +102,11 @@ impl<S: LibrarySource> Library<S> {
                 }
             }
         }
+    }
+
+    /// Returns where the bytes of the library come from.
+    pub fn source(&self) -> &S {
+        &self.source
     }
 
     /// Returns the name of the library; it may be empty.
@@ -268,14 +276,50 @@ impl<S: LibrarySource> Library<S> {
         // requests. Pages are replaced as a whole. Therefore, a thread that panics cannot leave an
         // incomplete page in the cache.
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(leaf) = recent().as_ref().filter(|leaf| leaf.number == number) {
+        // A page that was read before the index was checked is read again.
+        let is_checked = self.index.is_checked();
+        let is_known = |leaf: &&Leaf| leaf.number == number && (leaf.is_checked || !is_checked);
+        if let Some(leaf) = recent().as_ref().filter(is_known) {
             return Ok(leaf.entries.clone());
         }
         let range = self.index.leaf_range(number).unwrap_or_default();
         let bytes = self.read_range(range)?;
         let entries = Arc::new(self.index.read_leaf(number, &bytes)?);
-        *recent() = Some(Leaf { number, entries: entries.clone() });
+        *recent() = Some(Leaf { number, entries: entries.clone(), is_checked });
         Ok(entries)
+    }
+
+    /// Compares the whole index with the hash that the header states.
+    pub(crate) fn check_index(&self) -> Result<(), LibraryError> {
+        self.index.check_hash(self.index_reader())
+    }
+
+    /// Returns the accepted key that signed the library. `signature` is the contents of the file with
+    /// the signature, or `None` if there is none. Reads the whole index. From then on, the library
+    /// reads only textures that the signature covers: their hashes are in the index.
+    ///
+    /// # Errors
+    /// Returns [`LibraryError::Signature`] if the library is not signed by one of `signers`. Returns
+    /// another error if the index cannot be read or does not have the hash that was signed.
+    pub fn check_signed(
+        &self,
+        signature: Option<&[u8]>,
+        signers: &Signers,
+    ) -> Result<PublicKey, LibraryError> {
+        self.index.check_signed(signature, signers, self.index_reader())
+    }
+
+    /// Returns a function that reads the pages of the index, many at once.
+    fn index_reader(&self) -> impl FnMut(Range<u64>) -> Result<Vec<u8>, LibraryError> {
+        let mut ahead = Ahead::default();
+        let end = self.index.header().leaves.end;
+        move |page| {
+            if ahead.get(&page).is_none() {
+                let to = page.start.saturating_add(READ_AHEAD).min(end).max(page.end);
+                ahead = Ahead { start: page.start, bytes: self.read_range(page.start..to)? };
+            }
+            Ok(ahead.get(&page).unwrap_or_default().to_vec())
+        }
     }
 
     pub(crate) fn read_range(&self, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {

@@ -9,6 +9,7 @@ use htex_base::finding::{Findings, Report};
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
 use crate::library::facts::Facts;
+use crate::library::fault::Fault;
 use crate::library::fault::{entry_place, spectra_place};
 use crate::library::header::{MINOR, newer_note};
 use crate::library::index::{assembled, changed};
@@ -115,9 +116,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             }
         }
         if hash.finalize().as_bytes() != &index.blake3() {
-            let message =
-                "the index does not have the header's hash; get the file again".to_owned();
-            self.findings.add(rule::LIBRARY_INDEX_CHANGED, "/header", message);
+            Fault::index_changed().add_to(&mut self.findings);
         }
         self.check_spectra()?;
         self.check_end();

@@ -1,7 +1,10 @@
 //! A signature of a file, stored in a separate file.
 
 use std::fmt::{Display, Formatter};
+use std::io;
+use std::path::{Path, PathBuf};
 
+use htex_base::files::read_regular;
 use serde::{Deserialize, Serialize};
 
 use super::{PublicKey, SecretKey};
@@ -13,6 +16,8 @@ pub const SIGNATURE_EXTENSION: &str = "sig";
 
 /// The largest size of a signature file, bytes.
 const MOST_BYTES: usize = 4096;
+/// Of a larger file, nothing is read, bytes. A smaller file that is too large is malformed.
+const MOST_READ_BYTES: u64 = 1 << 16;
 
 /// The kind of a signed file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,9 +79,23 @@ impl SignedContent {
         Ok(Self::plugin(SignedKind::Asset, &asset.manifest.name, "", file))
     }
 
-    /// Returns the content to sign for a library.
+    /// Returns the content to sign for a library. Reads the whole index, because the hash in the
+    /// header is only a claim: a forged library may state the hash of a signed one. From then on,
+    /// the library refuses the pages that are not those of this hash.
+    ///
+    /// # Errors
+    /// Returns an error if the index cannot be read or does not have the hash that the header states.
     #[cfg(feature = "library")]
-    pub fn library(index: &crate::library::Index) -> Self {
+    pub fn library<S: crate::library::LibrarySource>(
+        library: &crate::library::Library<S>,
+    ) -> Result<Self, crate::library::LibraryError> {
+        library.check_index()?;
+        Ok(Self::index(library.index()))
+    }
+
+    /// Returns the content to sign for a library, whose index was compared with its hash.
+    #[cfg(feature = "library")]
+    pub(crate) fn index(index: &crate::library::Index) -> Self {
         Self {
             kind: SignedKind::Library,
             name: index.name().to_owned(),
@@ -182,10 +201,58 @@ impl FileSignature {
     }
 }
 
+/// Returns the path of a file's signature: the file's path with `.sig` behind it.
+pub fn signature_path(file: &Path) -> PathBuf {
+    let mut path = file.as_os_str().to_owned();
+    path.push(".");
+    path.push(SIGNATURE_EXTENSION);
+    path.into()
+}
+
+/// Reads the signature beside a file, which is in [`signature_path`]. Returns `None` if there is no
+/// such file.
+///
+/// # Errors
+/// Returns an error if it cannot be read, is no regular file, or is too large for a signature.
+pub fn read_signature(file: &Path) -> Result<Option<Vec<u8>>, crate::ReadError> {
+    let path = signature_path(file);
+    match read_regular(&path, MOST_READ_BYTES) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(crate::ReadError::Io { path, error }),
+    }
+}
+
+/// Reads the signature beside a file at a path or a URI. Returns `None` if there is none.
+///
+/// # Errors
+/// Returns an error if it cannot be read, or is too large for a signature.
+#[cfg(feature = "storage")]
+pub fn read_signature_at(
+    storage: &htex_base::storage::Storage,
+    file: &htex_base::storage::Location,
+) -> Result<Option<Vec<u8>>, htex_base::storage::StorageError> {
+    let text = format!("{file}.{SIGNATURE_EXTENSION}");
+    let location = htex_base::storage::Location::parse(text.as_ref())?;
+    let is_there = storage.exists(&location)?;
+    is_there.then(|| storage.read(&location, MOST_READ_BYTES)).transpose()
+}
+
+/// Returns the sentence for a file that is not opened because of its signature.
+pub(crate) fn refusal(error: &SignatureError) -> String {
+    format!("not opened: {error}; get the file and its signature from its signer")
+}
+
 /// The reason why a signature is not valid for a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SignatureError {
+    /// There is no signature.
+    #[error("it must be signed, and there is no signature of it")]
+    Missing,
+    /// Another key made the signature.
+    #[error("it is signed by another key, {key}")]
+    OtherKey { key: PublicKey },
     #[error("this is no signature of htex: {0}")]
     Malformed(String),
     #[error("the signature has version {0}, and this program reads version 1; update the program")]

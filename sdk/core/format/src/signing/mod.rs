@@ -4,9 +4,17 @@
 mod content;
 mod key;
 mod plugin;
+mod signers;
 mod trusted;
 
-pub use content::{FileSignature, SIGNATURE_EXTENSION, SignatureError, SignedContent, SignedKind};
+#[cfg(feature = "storage")]
+pub use content::read_signature_at;
+pub(crate) use content::refusal;
+pub use content::{
+    FileSignature, SIGNATURE_EXTENSION, SignatureError, SignedContent, SignedKind, read_signature,
+    signature_path,
+};
 pub use key::{PublicKey, SecretKey};
 pub(crate) use plugin::WASM_MAGIC;
+pub use signers::Signers;
 pub use trusted::{TrustedKey, TrustedKeys, check_key_name};

@@ -25,7 +25,8 @@ fn two_seconds(mut renderer: Renderer) -> Vec<f32> {
 fn a_scene_without_a_device_has_the_samples_of_a_file() {
     let path = example("two-swatches.scene.json");
     let (models, devices) = (Registry::builtin(), Devices::new(vec![Arc::new(FileAdapter)]));
-    let around = Surroundings { models: &models, embedded: true, devices: Some(&devices) };
+    let around =
+        Surroundings { models: &models, embedded: true, devices: Some(&devices), signers: None };
     let device = DeviceOverride {
         adapter: Some(ADAPTER.to_owned()),
         rehearsal: true,

@@ -22,8 +22,12 @@ impl Case {
     /// The report expected for the scene in `folder`, as pretty-printed JSON.
     pub(crate) fn golden(&self, folder: &Path) -> String {
         let devices = Devices::new(vec![Arc::new(htex_device_builtin::file::FileAdapter)]);
-        let around =
-            Surroundings { models: &Registry::builtin(), embedded: true, devices: Some(&devices) };
+        let around = Surroundings {
+            models: &Registry::builtin(),
+            embedded: true,
+            devices: Some(&devices),
+            signers: None,
+        };
         let file = format!("{}.scene.json", self.name);
         let report = validate(&folder.join(&file), &around).unwrap();
         let golden = json!({ "file": file, "valid": report.valid, "findings": report.findings });

@@ -10,8 +10,8 @@ use htex_base::native::folders;
 use htex_base::storage::{Location, Storage};
 pub(crate) use htex_format::signing::signature_path;
 use htex_format::signing::{
-    FileSignature, PublicKey, SIGNATURE_EXTENSION, SecretKey, SignedContent, SignedKind,
-    TrustedKey, TrustedKeys, read_signature_at,
+    FileSignature, PublicKey, SecretKey, SignedContent, SignedKind, TrustedKey, TrustedKeys,
+    read_signature_at,
 };
 use serde::Serialize;
 
@@ -21,9 +21,6 @@ use crate::failure::{Failure, Result};
 const TRUSTED: &str = "trusted.json";
 /// The largest list of trusted keys, bytes.
 const MOST_BYTES: u64 = 1 << 20;
-/// Maximum number of bytes that are read of a signature. Every valid signature has fewer bytes, and
-/// the reader of signatures refuses a larger one.
-pub(crate) const MOST_SIGNATURE_BYTES: u64 = 1 << 16;
 
 /// The user's folder of keys: `keys` in the folder for settings.
 pub(crate) struct KeyRing {
@@ -266,9 +263,4 @@ pub(crate) fn plugin_content(file: &Path, signature: &FileSignature) -> Result<S
     };
     let bytes = std::fs::read(file).reading(file)?;
     Ok(SignedContent::plugin(kind, &told.name, &told.version, &bytes))
-}
-
-/// Returns the location of a file's signature, which [`signature_path`] returns for a local file.
-pub(crate) fn signature_location(file: &Location) -> Result<Location> {
-    Ok(Location::parse(format!("{file}.{SIGNATURE_EXTENSION}").as_ref())?)
 }

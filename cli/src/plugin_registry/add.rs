@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use htex_base::files::{AtFile, OwnFolder, read_regular};
 use htex_base::native::description::read_descriptor;
 use htex_build::registry::{Entry, MODULE, PlatformFile, PluginKind, own_platform};
-use htex_format::signing::FileSignature;
+use htex_format::signing::{FileSignature, read_signature};
 use serde::Deserialize;
 
 use super::check::check_bytes;
 use super::{ENTRIES, MOST_ENTRY_BYTES, MOST_PLUGIN_BYTES};
 use crate::failure::{Failure, Result};
-use crate::keys::{MOST_SIGNATURE_BYTES, signature_path};
+use crate::keys::signature_path;
 use crate::output::{OutputFile, shown};
 
 /// The folder of a registry with the plugins' files.
@@ -43,18 +43,12 @@ struct Summary {
 /// entry remain. Changes nothing if an error is returned.
 pub(crate) fn add(registry: &Path, plugin: &Path, texts: &Texts) -> Result<Added> {
     let bytes = read_regular(plugin, MOST_PLUGIN_BYTES).reading(plugin)?;
-    let signature_file = signature_path(plugin);
-    let signature = match read_regular(&signature_file, MOST_SIGNATURE_BYTES) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            let file = shown(plugin);
-            return Err(Failure::Usage(format!(
-                "{file} is not signed; `htex sign {file}` signs it"
-            )));
-        }
-        read => read.reading(&signature_file)?,
-    };
+    let signature = read_signature(plugin).map_err(Failure::other)?.ok_or_else(|| {
+        let file = shown(plugin);
+        Failure::Usage(format!("{file} is not signed; `htex sign {file}` signs it"))
+    })?;
     let signed = FileSignature::from_json(&signature)
-        .map_err(|error| Failure::Other(format!("{}: {error}", shown(&signature_file))))?;
+        .map_err(|error| Failure::Other(format!("{}: {error}", shown(&signature_path(plugin)))))?;
     let (id, version) = (signed.content.name.clone(), signed.content.version.clone());
     if !htex_model::is_model_id(&id) {
         return Err(Failure::Other(format!("{}: it names no id of a plugin", shown(plugin))));

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, read_regular};
 use htex_build::registry::{Entry, PlatformFile, PluginKind};
-use htex_format::signing::{FileSignature, PublicKey, SignedContent, SignedKind};
+use htex_format::signing::{FileSignature, PublicKey, SignedContent, SignedKind, read_signature};
 
 use super::{ENTRIES, MOST_ENTRY_BYTES, MOST_PLUGIN_BYTES};
 use crate::failure::Result;
-use crate::keys::{MOST_SIGNATURE_BYTES, signature_path};
 
 /// An entry's file, and the entry or what is wrong with it.
 pub(crate) type Read = (PathBuf, Result<Entry, String>);
@@ -86,8 +85,8 @@ fn check_file(
 ) -> Result<(), String> {
     let path = registry.join(&file.file);
     let bytes = read_regular(&path, MOST_PLUGIN_BYTES).map_err(|error| error.to_string())?;
-    let signature = read_regular(&signature_path(&path), MOST_SIGNATURE_BYTES)
-        .map_err(|error| format!("its signature: {error}"))?;
+    let signature = read_signature(&path).map_err(|error| error.to_string())?;
+    let signature = signature.ok_or("it has no signature")?;
     check_bytes(entry, version, file, &bytes, &signature)
 }
 

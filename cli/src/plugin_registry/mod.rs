@@ -8,9 +8,9 @@ pub(crate) mod page;
 use htex_base::finding::plain;
 use htex_base::storage::{Location, Storage};
 use htex_build::registry::{Entry, PlatformFile};
+use htex_format::signing::read_signature_at;
 
 use crate::failure::{Failure, Result};
-use crate::keys::{MOST_SIGNATURE_BYTES, signature_location};
 
 /// The folder of a registry with the entries.
 pub(crate) const ENTRIES: &str = "plugins";
@@ -68,10 +68,9 @@ impl PluginRegistry {
         } else {
             self.place.inside(text)
         };
-        let signature = signature_location(&location)?;
-        Ok(Fetched {
-            file: storage.read(&location, MOST_PLUGIN_BYTES)?,
-            signature: storage.read(&signature, MOST_SIGNATURE_BYTES)?,
-        })
+        let signature = read_signature_at(&storage, &location)?.ok_or_else(|| {
+            Failure::Other(format!("{location}: the registry has no signature of this file"))
+        })?;
+        Ok(Fetched { file: storage.read(&location, MOST_PLUGIN_BYTES)?, signature })
     }
 }

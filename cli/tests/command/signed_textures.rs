@@ -18,8 +18,8 @@ const COMMANDS: [&str; 13] = [
     "render IN/file.scene.json -o out.wav",
     "render IN/library.scene.json -o out.wav",
     "export IN/library.scene.json --to wav -o out.wav",
-    "export IN/all.htexlib#* --to wav --seconds 0.1 -o out/",
-    "lib export IN/all.htexlib --to wav --seconds 0.1 -o out",
+    "export IN/all.htexlib#* --to wav --seconds 0.5 -o out/",
+    "lib export IN/all.htexlib --to wav --seconds 0.5 -o out",
     "bake IN/vinyl.htex -o out.h",
     "mix IN/vinyl.htex IN/all.htexlib#vinyl --weight 0.5 -o out.htex",
     "compare IN/vinyl.htex s3://IN/vinyl.htex --json",
@@ -69,7 +69,7 @@ fn publish(bench: &Bench, folder: &str, files: &[(&str, Vec<u8>)]) {
         bench.place.write(&name, bytes);
         bench.server.put(&name, bytes);
     }
-    let short = json!({ "duration_s": 0.1 });
+    let short = json!({ "duration_s": 0.5 });
     for (scene, asset) in [("file", "vinyl.htex"), ("library", "all.htexlib#vinyl")] {
         bench.place.scene(&format!("{folder}/{scene}.scene.json"), asset, &short);
     }

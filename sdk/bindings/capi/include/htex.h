@@ -24,7 +24,7 @@
  Version of this interface: the major version in the upper 16 bits, the minor version in the
  lower 16. 0x00010000 is 1.0. A new minor version only adds functions, fields and values.
  */
-#define HTEX_API_VERSION 65537
+#define HTEX_API_VERSION 65538
 
 /*
  WASM modules are not loaded. A call that needs the model in such a module returns
@@ -122,6 +122,10 @@ enum htex_status
      The device or its driver is missing, is in use, or failed. The device is then at rest.
      */
     HTEX_STATUS_DEVICE = 16,
+    /*
+     The file is not signed by any of the keys in `only_signed_by` of htex_open_options.
+     */
+    HTEX_STATUS_NOT_SIGNED = 17,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -227,6 +231,22 @@ typedef struct htex_open_options {
      variable HTEX_PLUGIN_PATH, and from the user's plugin folder.
      */
     uint32_t installed;
+    /*
+     Public keys, each in 64 hexadecimal digits. If there are any, each texture must be signed by
+     one of them: an asset that is opened, the library of a texture, and each texture of a scene.
+     The signature of a file is in PATH.sig beside it, and in a scene in memory the file NAME.sig.
+     Otherwise the call returns HTEX_STATUS_NOT_SIGNED.
+     */
+    const char *const *only_signed_by;
+    /*
+     Number of `only_signed_by`. 0 accepts textures without a signature.
+     */
+    size_t only_signed_by_len;
+    /*
+     The contents of the file with the signature, for what has no PATH: an asset or a library in
+     memory or behind a reader. The library uses the bytes only during the call.
+     */
+    struct htex_bytes signature;
 } htex_open_options;
 
 /*

@@ -187,17 +187,18 @@ def test_only_what_a_key_signed_is_opened(place: pathlib.Path, library: htex.Lib
     cloth, three = tmp_path / "cloth.htex", tmp_path / "three.htexlib"
     signatures = [path.with_name(path.name + ".sig").read_bytes() for path in (cloth, three)]
     key, other = json.loads(signatures[0])["public_key"], "00474ae0c6af07224d0a4250b8a3c82cc7c6e1a9e0e27bce347f01a6bd229caa"
-    scene = tmp_path / "one.scene.json"
     motion = {"constant": {"speed_mm_s": 80, "force_n": 0.4}}
-    surfaces = [{"asset": "cloth.htex"}, {"asset": "three.htexlib#Felt"}]
-    scene.write_text(json.dumps({"htex_scene": "1.0", "surfaces": surfaces, "motion": motion, "duration_s": 0.1}))
+    scenes = [tmp_path / "cloth.scene.json", tmp_path / "three.scene.json"]
+    for scene, asset in zip(scenes, ["cloth.htex", "three.htexlib#Felt"]):
+        scene.write_text(json.dumps({"htex_scene": "1.0", "surfaces": [{"asset": asset}], "motion": motion, "duration_s": 0.1}))
     opens = [
         lambda keys: htex.open(cloth, only_signed_by=keys),
         lambda keys: htex.open(f"{three}#Felt", only_signed_by=keys),
         lambda keys: htex.open(cloth.read_bytes(), only_signed_by=keys, signature=signatures[0]),
         lambda keys: htex.Library(three, only_signed_by=keys)["Felt"],
         lambda keys: htex.Library(three.read_bytes(), only_signed_by=keys, signature=signatures[1])["Felt"],
-        lambda keys: htex.Scene(scene, only_signed_by=keys),
+        lambda keys: htex.Scene(scenes[0], only_signed_by=keys),
+        lambda keys: htex.Scene(scenes[1], only_signed_by=keys),
     ]
     for opened in opens:
         opened(key)
@@ -215,6 +216,6 @@ def test_only_what_a_key_signed_is_opened(place: pathlib.Path, library: htex.Lib
     (tmp_path / "cloth.htex").write_bytes(library.to_bytes("woven/b"))
     with pytest.raises(htex.SignatureError, match="changed"):
         htex.open(cloth, only_signed_by=key)
-    assert htex.Scene(scene).rate_hz > 0
+    assert htex.Scene(scenes[0]).rate_hz > 0
     with pytest.raises(htex.SignatureError, match=r"cloth\.htex.*changed"):
-        htex.Scene(scene, only_signed_by=key)
+        htex.Scene(scenes[0], only_signed_by=key)

@@ -213,7 +213,7 @@ def test_only_what_a_key_signed_is_opened(place: pathlib.Path, library: htex.Lib
         htex.open(cloth.read_bytes(), only_signed_by=key)
     with pytest.raises(htex.OptionError, match="only_signed_by"):
         htex.open(cloth.read_bytes(), signature=signatures[0])
-    (tmp_path / "cloth.htex").write_bytes(library.to_bytes("woven/b"))
+    cloth.write_bytes(htex.edit(htex.open(cloth), description="Changed").to_bytes())
     with pytest.raises(htex.SignatureError, match="changed"):
         htex.open(cloth, only_signed_by=key)
     assert htex.Scene(scenes[0]).rate_hz > 0

@@ -91,7 +91,7 @@ impl Asset {
     }
 
     /// Reads an asset from bytes, within the default [`Limits`], if one of `signers` signed it.
-    /// `signature` is the contents of the file with the signature, or `None` if there is none.
+    /// `signature` is the contents of the file with the signature, or `None` without such a file.
     ///
     /// # Errors
     /// Returns the errors of [`Self::from_bytes`], and [`ReadError::Signature`] if the bytes are not

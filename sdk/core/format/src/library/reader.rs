@@ -295,7 +295,7 @@ impl<S: LibrarySource> Library<S> {
     }
 
     /// Returns the accepted key that signed the library. `signature` is the contents of the file with
-    /// the signature, or `None` if there is none. Reads the whole index. From then on, the library
+    /// the signature, or `None` without such a file. Reads the whole index. From then on, the library
     /// reads only textures that the signature covers: their hashes are in the index.
     ///
     /// # Errors
@@ -380,7 +380,7 @@ impl Ahead {
 }
 
 impl<S: LibrarySource> Library<S> {
-    /// Returns the bytes of a page. Reads the pages after it, too. `range` returns the place of
+    /// Returns the bytes of a page. Also reads the pages after it. `range` returns the place of
     /// each page in the file. The pages follow each other, and pages without a place are skipped.
     fn page<'a>(
         &self,
@@ -401,7 +401,7 @@ impl<S: LibrarySource> Library<S> {
 }
 
 impl<S: LibrarySource> Entries<'_, S> {
-    /// Returns the entries of a leaf page. Reads the pages after it, too.
+    /// Returns the entries of a leaf page. Also reads the pages after it.
     fn leaf(&mut self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
         let index = &self.library.index;
         let page = self.library.page(&mut self.ahead, number, |leaf| index.leaf_range(leaf))?;

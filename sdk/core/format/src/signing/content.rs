@@ -223,7 +223,7 @@ pub fn read_signature(file: &Path) -> Result<Option<Vec<u8>>, crate::ReadError> 
     }
 }
 
-/// Reads the signature beside a file at a path or a URI. Returns `None` if there is none.
+/// Reads the signature beside a file at a path or a URI. Returns `None` if there is no such file.
 ///
 /// # Errors
 /// Returns an error if it cannot be read, or is too large for a signature.
